@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 COMPONENTS = ("cutter", "shank", "holder")
 _BATCH = 400
+#: Every so manyth motion is measured first: the deepest of them leaves the others little to tell.
+_STRIDE = 97
 #: Resolution of reported clearances, mm.
 _ROUGH = 0.005
 #: How far the nearest face of a motion is looked for that turns out to keep its distances, mm.
@@ -122,7 +124,9 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     allowance : float
         Stock left on the group, mm.
     """
-    nearest = lower_bounds(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
+    spread = np.arange(0, len(moves), _STRIDE)
+    order = np.concatenate([spread, np.setdiff1d(np.arange(len(moves)), spread)])
+    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE)[0]
     return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
 
 
@@ -195,13 +199,22 @@ def worst_motion(tool: Tool, group: CheckSurfaces, moves: Array, required: Array
 
 def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float) -> dict[int,
                                                                                                              float]:
-    """Least distance of components to a group over all motions; the bound found so far cuts the search short."""
+    """Least distance of components to a group over all motions, at most `_ROUGH` too small; `most` where it is more."""
     if not components:
         return {}
-    asked, best = _only(group, components), np.full(3, most + _ROUGH)
-    order = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
-    for first in range(0, len(order), _BATCH):
-        least = lower_bounds(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH,
-                             asked).lower.min(axis=0)
-        best = np.where(least < best - _ROUGH, least, best)
-    return {c: float(best[c]) - _ROUGH for c in components}
+    lowest_first = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
+    found = _bound_least(tool, group, moves[lowest_first], components, most + _ROUGH, _ROUGH)
+    return {c: float(found[c]) for c in components}
+
+
+def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float,
+                 resolution: float) -> Array:
+    """Lower bounds (3,) of the least distance of components to a group over all motions, up to `most`.
+
+    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.
+    """
+    asked, best = _only(group, components), np.full(3, most)
+    for first in range(0, len(moves), _BATCH):
+        least = lower_bounds(group.cells, tool, moves[first:first + _BATCH], best, resolution, asked).lower.min(axis=0)
+        best = np.where(least < best - resolution, least, best)
+    return np.asarray(best - resolution)
