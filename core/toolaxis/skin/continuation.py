@@ -105,8 +105,8 @@ class Continuation:
         bend = (spline.bend + weight[:, None, None] * (plane.bend - spline.bend)
                 + first[:, None, None] * (_outer(out, turn) + _outer(turn, out) + off[:, None, None] * round_)
                 + (off * second)[:, None, None] * across)
-        return Heights(spline.value + weight * off, spline.slope + weight[:, None] * turn + (first * off)[:, None] * out,
-                       bend)
+        slope = spline.slope + weight[:, None] * turn + (first * off)[:, None] * out
+        return Heights(spline.value + weight * off, slope, bend)
 
     def _planes(self, places: Array, feet: _Feet) -> Heights:
         """Tangent planes at the nearest places of the outline; their third derivatives along it are left out."""
