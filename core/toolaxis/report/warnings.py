@@ -6,6 +6,7 @@ from typing import Any
 
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
+from toolaxis.report.areas_aside import describe_not_begun
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,9 @@ def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
     """What is left to clean-up, and what has no axis; turned copies with the same fate count with their original."""
     left, lost = [], []
     if plan.outcome == "cancelled":
-        lost.append(Warning("stop", "the plan was cancelled before all sub-surfaces were done: it is not whole"))
+        missing = describe_not_begun(plan)
+        more = f"; {missing}" if missing else ""
+        lost.append(Warning("stop", f"the plan was cancelled before all sub-surfaces were done: it is not whole{more}"))
     copies = {} if plan.blades is None else plan.blades.copies
     numbers = {op.number for op in plan.operations if not op.done}
     for op in plan.operations:

@@ -190,11 +190,12 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
 
 def _account(plan: Plan, verdict: Verdict) -> dict[str, float]:
     """How much of the faces that were asked for passed, mm^2."""
-    area = plan.account.area
+    planned = plan.account
     passed = sum(op.area - op.declared for op in verdict.operations if op.passed)
-    verified = min(float(passed), area)
-    return {"area": area, "verified": verified, "unreachable": plan.account.unreachable,
-            "open": max(area - verified - plan.account.unreachable, 0.0)}
+    verified = min(float(passed), planned.area)
+    left = planned.area - verified - planned.unreachable - planned.not_begun
+    return {"area": planned.area, "verified": verified, "unreachable": planned.unreachable, "open": max(left, 0.0),
+            "not_begun": planned.not_begun}
 
 
 def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:

@@ -85,7 +85,8 @@ def append_operations(plan: Plan, other: Plan) -> Plan:
     """
     more = tuple(renumber(op, len(plan.operations)) for op in other.operations)
     worst = next((name for name in ("cancelled", "incomplete") if name in (plan.outcome, other.outcome)), "complete")
-    return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults))
+    return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults),
+                   unplanned=(*plan.unplanned, *other.unplanned))
 
 
 def renumber(op: Operation, before: int) -> Operation:

@@ -20,6 +20,7 @@ from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
+from toolaxis.job.planning.not_begun import add_not_begun
 from toolaxis.job.planning.parallel import check_workers
 from toolaxis.job.planning.planner import PlanningJob, went_on
 from toolaxis.job.planning.rack import RackPlanner
@@ -233,11 +234,11 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         whole_part = None if pattern is None else replace(pattern, part=loaded)
         jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
         made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
-        return replace(_order_operations(made, progress), held=in_clamping)
+        return replace(add_not_begun(_order_operations(made, progress), free), held=in_clamping)
     untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
     whole = faces is None and untouched and method in METHODS
     made = _plan_part(job, free, (whole, compare), progress)
-    return replace(_order_operations(made, progress), held=in_clamping)
+    return replace(add_not_begun(_order_operations(made, progress), free), held=in_clamping)
 
 
 def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,

@@ -1,0 +1,20 @@
+"""What of the faces that were asked for is in no operation of a plan, and why."""
+
+from typing import NamedTuple
+
+#: What was not begun when the plan was stopped, and what an operation leaves for smaller tools that were not begun.
+NOT_BEGUN, REST = "not begun", "rest not begun"
+
+
+class UnplannedArea(NamedTuple):
+    """A face, or some of it, that is in no operation.
+
+    face : int, its number;  label : str;  area : float, mm^2 of it;  whole : bool, whether nothing of the face is in an
+    operation;  why : str, one of the words of this module, of which `REST` is area that an operation has and leaves.
+    """
+
+    face: int
+    label: str
+    area: float
+    whole: bool
+    why: str
