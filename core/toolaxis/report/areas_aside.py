@@ -1,4 +1,4 @@
-"""What of the faces that were asked for is in no operation of a plan, in sentences."""
+"""What of the faces that were asked for no operation of a plan machines, in sentences."""
 
 from collections.abc import Sequence
 
@@ -8,6 +8,8 @@ from toolaxis.plan.unplanned_area import UnplannedArea
 
 #: Faces that are named; the others are counted.
 _NAMED = 20
+#: Area below which nothing is said of what stays open, mm^2.
+_TOLD = 0.05
 
 
 def describe_held(plan: Plan) -> str:
@@ -37,6 +39,22 @@ def describe_not_begun(plan: Plan) -> str:
         return ""
     return (f"not begun when the plan was stopped: {plan.account.not_begun:.1f} mm2, of faces "
             f"{_name_areas(plan.unplanned)}")
+
+
+def describe_open(plan: Plan) -> str:
+    """What of the faces stays open, for whatever reason; empty where that is next to nothing.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    found = plan.account
+    left = found.area - found.machined
+    if left < _TOLD:
+        return ""
+    parts = ((found.unreachable, "proven out of reach"), (found.not_begun, "not begun"))
+    told = "".join(f", {area:.1f} mm2 of it {words}" for area, words in parts if area >= _TOLD)
+    return f"stays open: {left:.1f} of {found.area:.1f} mm2 ({100 * left / found.area:.1f} %){told}"
 
 
 def _name_areas(some: Sequence[HeldFace | UnplannedArea]) -> str:

@@ -80,8 +80,8 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         return [Warning("stop", "not judged: run toolaxis verify on this folder before anything is machined")]
     found = []
     failed = {op["name"] for op in verdict["operations"] if not op["passed"]}
-    if not verdict["passed"] and (failed or not verdict.get("unjudged")):
-        found.append(Warning("stop", "the verdict is FAIL" + (f": {', '.join(sorted(failed))}" if failed else "")))
+    if failed:
+        found.append(Warning("stop", f"the verdict is FAIL: {', '.join(sorted(failed))}"))
     judged = {op["name"] for op in verdict["operations"]}
     unjudged = [op.name for op in plan.operations if op.done and op.name not in judged]
     if unjudged:
