@@ -620,7 +620,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     words = left_reasons(made.zones, job.worth.face)
     found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
-                        ideal=job.worth.ideal_length(one.axis))
+                        ideal=job.worth.ideal_length(one.axis), zones=made.zones)
     return CheckedCandidate(one, found, proof, path, made.longer)
 
 

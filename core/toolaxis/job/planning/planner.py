@@ -506,7 +506,7 @@ class PlanningJob:
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         frame = None if path is None else frame_of(face, found, self.datum)
-        return Operation(number, face, self.tool, found, path, frame)
+        return Operation(number, face, self.tool, found, path, frame, found.zones)
 
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
