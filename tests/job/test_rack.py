@@ -278,7 +278,7 @@ def test_what_was_not_begun_is_told_in_table_file_and_page(tmp_path: Path) -> No
     assert part["not_begun"] == pytest.approx(area + rest)
     assert part["area"] == pytest.approx(part["machined"] + part["unreachable"] + part["open"] + part["not_begun"])
     assert {(one["label"], one["why"], one["whole"]) for one in part["unplanned"]} == {
-        ("2", "not begun", True), ("1", "rest not begun", False)}
+        ("2", "not_begun", True), ("1", "rest_not_begun", False)}
     back = read_plan(tmp_path / "out")
     assert back.account == made.account and back.unplanned == made.unplanned
     judged = verdict_document(back, ta.verify(back))["part"]

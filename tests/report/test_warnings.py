@@ -18,7 +18,7 @@ def op(number: int, *, done: bool = True, left: bool = False, why: str = "", zon
 def plan(*operations: Any, outcome: str = "complete", copies: dict[int, int] | None = None, **more: Any) -> Any:
     blades = None if copies is None else SimpleNamespace(copies=copies, side_of=lambda number: "")
     given = {"not_checked": (), "part": SimpleNamespace(warnings=()), "machine": None, "in_the_way": (), "faults": (),
-             "taken_over": frozenset(), **more}
+             "taken_over": frozenset(), "unplanned": (), **more}
     return SimpleNamespace(operations=operations, outcome=outcome, blades=blades, **given)
 
 

@@ -193,7 +193,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
                  **account_document(plan.account),
                  "held": [one._asdict() for one in plan.held],
-                 "unplanned": [one._asdict() for one in plan.unplanned]},
+                 "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned]},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
         "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid)},
@@ -291,4 +291,5 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
                 tuple(Fault(sentence) for sentence in document.get("faults", ())),
                 held=tuple(HeldFace(**one) for one in document["part"].get("held", ())),
-                unplanned=tuple(UnplannedArea(**one) for one in document["part"].get("unplanned", ())))
+                unplanned=tuple(UnplannedArea(**{**one, "point": tuple(one["point"])})
+                                for one in document["part"].get("unplanned", ())))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from toolaxis.plan.operation import Operation
-from toolaxis.plan.unplanned_area import REST, UnplannedArea
+from toolaxis.plan.unplanned_area import HIDDEN, REST, UnplannedArea
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,8 @@ class PartAccount:
         machined = min(machined, area)
         proven = sum(op.unreachable if not op.done else sum(zone.unreachable for zone in op.zones) for op in operations)
         proven = min(proven, area - machined)
-        not_begun = min(sum(one.area for one in unplanned), area - machined - proven)
+        not_begun = sum(one.area for one in unplanned if one.why != HIDDEN)
+        not_begun = min(not_begun, area - machined - proven)
         length = sum(op.orientation.length for op in done)
         return PartAccount(float(area), float(machined), float(proven), float(length), float(bound), float(not_begun))
 

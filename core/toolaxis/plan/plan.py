@@ -34,6 +34,8 @@ _LIE = {PLANES: "planes", FIELD: "a field"}
 INDEX_SECONDS = 6.0
 #: What a change of tools is reckoned to take, s.
 CHANGE_SECONDS = 10.0
+#: Share of the faces that may stay open in a plan with several tools that is complete.
+LEFT_OPEN = 1e-3
 
 
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from toolaxis.plan.held_face import HeldFace
 from toolaxis.plan.plan import Plan
-from toolaxis.plan.unplanned_area import UnplannedArea
+from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 
 #: Faces that are named; the others are counted.
 _NAMED = 20
@@ -35,10 +35,26 @@ def describe_not_begun(plan: Plan) -> str:
     ----------
     plan : Plan
     """
-    if not plan.unplanned:
+    found = [one for one in plan.unplanned if one.why != HIDDEN]
+    if not found:
         return ""
-    return (f"not begun when the plan was stopped: {plan.account.not_begun:.1f} mm2, of faces "
-            f"{_name_areas(plan.unplanned)}")
+    return f"not begun when the plan was stopped: {plan.account.not_begun:.1f} mm2, of faces {_name_areas(found)}"
+
+
+def describe_hidden(plan: Plan) -> str:
+    """What of the faces lies under others of their skin; empty where that is nothing.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    found = [one for one in plan.unplanned if one.why == HIDDEN]
+    if not found:
+        return ""
+    shown = [f"{one.area:.2f} mm2 of face {one.label} under face {one.beneath} at "
+             f"{' '.join(f'{x:.1f}' for x in one.point)}" for one in found[:_NAMED]]
+    more = f", and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
+    return f"hidden in a skin, in no operation: {', '.join(shown)}{more}"
 
 
 def describe_open(plan: Plan) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
-from toolaxis.report.areas_aside import describe_not_begun
+from toolaxis.report.areas_aside import describe_hidden, describe_not_begun
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,8 @@ def warnings_of(plan: Plan, verdict: Mapping[str, Any] | None) -> tuple[Warning,
     found += [Warning("mind", text) for text in plan.part.warnings]
     if plan.machine is not None and plan.machine.machine.assumed:
         found.append(Warning("mind", f"assumed in the machine's file: {', '.join(plan.machine.machine.assumed)}"))
+    if hidden := describe_hidden(plan):
+        found.append(Warning("mind", hidden))
     found += [*left, *_of_clean_up(plan)]
     order = {"stop": 0, "mind": 1, "note": 2}
     return tuple(sorted(found, key=lambda one: order[one.level]))

@@ -18,7 +18,7 @@ from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
-from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, Plan
+from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, LEFT_OPEN, Plan
 from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.cells import FaceCells, screening_axes
@@ -42,8 +42,6 @@ WHOLE, MUCH = 0.8, 0.3
 APART_BELOW = 0.5
 #: Share of a face that is out of reach where no tool is asked for it.
 PROVEN = 0.99
-#: Share of the faces that may stay open in a plan that is complete.
-LEFT_OPEN = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
