@@ -193,8 +193,24 @@ def _planned_and_judged(part: dict[str, Any], words: list[str], areas: Mapping[i
         verdict = _read(folder / "verdict.json")
     part["outcome"] = None if plan is None else plan["outcome"]
     part["passed"] = None if verdict is None else verdict["passed"]
-    part["whole"] = None if verdict is None or not whole else verdict.get("part")
+    part["whole"] = account_of_part(plan, verdict) if whole else None
     return outcomes(areas, plan, planned, verdict, judged)
+
+
+def account_of_part(plan: Mapping[str, Any] | None, verdict: Mapping[str, Any] | None) -> Mapping[str, float] | None:
+    """Areas of a whole part as its verdict tells them; as its plan does where there is nothing to judge.
+
+    Parameters
+    ----------
+    plan, verdict : mapping or None
+        What was written.
+    """
+    if verdict is not None:
+        return verdict.get("part")
+    if plan is None or "not_begun" not in plan["part"]:  # a version that knows only of the faces that were begun
+        return None
+    areas: dict[str, float] = {name: plan["part"][name] for name in ("area", "unreachable", "not_begun")}
+    return {**areas, "verified": 0.0}
 
 
 def _read(path: Path) -> dict[str, Any] | None:
@@ -219,7 +235,7 @@ def _print_part(part: Mapping[str, Any]) -> None:
         return
     rows = part["rows"]
     verified = [row for row in rows if row["verified"]]
-    area, done = _areas(part)
+    area, done = areas_of(part)
     proven = (part.get("whole") or {}).get("unreachable", 0.0)
     shares = f"{_percent(len(verified), len(rows)):>7} {_percent(done, area):>6} {_percent(proven, area):>6}"
     unsafe = [row for row in rows if row["outcome"] in ("failed", "not judged")]
@@ -231,6 +247,9 @@ def _print_part(part: Mapping[str, Any]) -> None:
     if unsafe:
         faces = ", ".join(f"{row['face']} ({row['kind']})" for row in unsafe)
         print(f"    planned but not verified: {faces}")
+    not_begun = (part.get("whole") or {}).get("not_begun", 0.0)
+    if not_begun > 0:
+        print(f"    not begun: {not_begun:.1f} mm2 ({_percent(not_begun, area)} %)")
     if undone:
         kinds = Counter(row["kind"] for row in undone)
         faces = {kind: ",".join(str(row["face"]) for row in undone if row["kind"] == kind) for kind in kinds}
@@ -250,7 +269,7 @@ def _print_total(result: Mapping[str, Any]) -> None:
     rows = [row for part in result["parts"] for row in part["rows"]]
     verified = [row for row in rows if row["verified"]]
     areas = [_share(part) for part in result["parts"] if part["rows"]]
-    known = [(part["whole"], _areas(part)[0]) for part in result["parts"] if part.get("whole")]
+    known = [(part["whole"], areas_of(part)[0]) for part in result["parts"] if part.get("whole")]
     told = [(one["verified"] + one["unreachable"]) / area for one, area in known if area > 0]
     print(f"\n{len(result['parts'])} parts, {len(rows)} faces drawn, {len(verified)} verified "
           f"({_percent(len(verified), len(rows))} %); verified share of the drawn area, mean over parts "
@@ -267,18 +286,24 @@ def _print_total(result: Mapping[str, Any]) -> None:
           "resident set of one process")
 
 
-def _areas(part: Mapping[str, Any]) -> tuple[float, float]:
-    """Area that was asked for, and what of it is verified, mm^2."""
+def areas_of(part: Mapping[str, Any]) -> tuple[float, float]:
+    """Area that was asked for, and what of it is verified, mm^2.
+
+    Parameters
+    ----------
+    part : mapping
+    """
     if part.get("whole"):
         asked = part["whole"]["area"]
-        if part["outcome"] == "cancelled":  # which knows only of the faces that were begun
+        # A version that does not tell what it did not begin knows only of the faces that were begun.
+        if part["outcome"] == "cancelled" and "not_begun" not in part["whole"]:
             asked = max(asked, part["sculptured_area"])
         return asked, part["whole"]["verified"]
     return sum(row["area"] for row in part["rows"]), sum(row["verified_area"] for row in part["rows"])
 
 
 def _share(part: Mapping[str, Any]) -> float:
-    area, verified = _areas(part)
+    area, verified = areas_of(part)
     return verified / area if area > 0 else 0.0
 
 

@@ -13,6 +13,7 @@ from benchmarks._bounded import Bounds, MessageLine, Ran, python, run
 from benchmarks._faces import kind_of, outcomes
 from benchmarks._iso_scallop import BORDERS, length_from_border
 from benchmarks._rack import chosen, given
+from benchmarks.real_parts import account_of_part, areas_of
 
 from toolaxis.path.parametrization import Cut
 from toolaxis.shape.face import Face
@@ -83,6 +84,19 @@ def test_a_part_goes_through_the_command_and_is_compared(tmp_path: Path) -> None
     worse = _real_parts(str(tmp_path / "worse.json"), "--compare", str(tmp_path / "new.json"))
     assert "LESS" in worse.stdout and "LOST face 1" in worse.stdout and "judged fail: gouge" in worse.stdout
     assert "planned but not verified: 1 (judged fail)" in worse.stdout
+
+
+def test_areas_of_a_stopped_plan_are_those_of_its_account() -> None:
+    """Found: what was not begun was missing, and the benchmark put the sculptured faces of the part in its place."""
+    told = {"area": 90.0, "machined": 0.0, "unreachable": 10.0, "not_begun": 60.0, "open": 20.0}
+    judged = {"area": 90.0, "verified": 5.0, "unreachable": 10.0, "not_begun": 60.0}
+    assert account_of_part({"part": told}, None) == {**judged, "verified": 0.0}
+    assert account_of_part({"part": told}, {"part": judged}) == judged
+    earlier = {name: area for name, area in told.items() if name != "not_begun"}
+    assert account_of_part({"part": earlier}, None) is None is account_of_part(None, None)
+    part = {"outcome": "cancelled", "sculptured_area": 120.0, "whole": judged, "rows": []}
+    assert areas_of(part) == (90.0, 5.0), "an avoided face is none that was asked for"
+    assert areas_of({**part, "whole": {"area": 90.0, "verified": 5.0}}) == (120.0, 5.0)
 
 
 def test_claims_of_a_part_are_attacked_and_printed() -> None:

@@ -5,6 +5,7 @@ for what they cannot reach of face 90.
 """
 
 import numpy as np
+import pytest
 
 from toolaxis.cad.load import load
 from toolaxis.job.inputs.spec import with_joined
@@ -27,3 +28,9 @@ def test_what_lies_under_another_member_is_not_of_a_piece(shared_parts):
     assert np.linalg.norm(surface.evaluate(place[None]).point[0] - HIDDEN) > 3.0
     piece = skin.trimmed((square,), f"{skin.label}a")
     assert [own.number for own in own_pieces(piece)] == [3]
+    hidden = surface.hidden[0]
+    assert (hidden.face, hidden.beneath) == (90, 3) and 0.2 < hidden.area < 1.0
+    assert np.linalg.norm(hidden.point - HIDDEN) < 0.5, "it is told where that is"
+    left = sum(face.area for face in skin.own_faces) - sum(one.area for one in surface.hidden)
+    assert skin.area == pytest.approx(left, rel=1e-12)
+    assert sum(own.area for own in own_pieces(skin)) == pytest.approx(skin.area, rel=1e-5)

@@ -151,10 +151,10 @@ def test_a_worker_that_dies_costs_its_face(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_fault_after_the_search_costs_its_face(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = zones.zones_of
 
-    def _zones(plan, op, progress):
+    def _zones(plan, op):
         if op.face.number == 2:
             raise ZeroDivisionError("planted")
-        return whole(plan, op, progress)
+        return whole(plan, op)
 
     monkeypatch.setattr(zones, "zones_of", _zones)
     made = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=workers)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,10 +11,13 @@ import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.planning.clean_up_zones import WHOLLY, describe_zones
+from toolaxis.job.planning.edit_axis import try_axis
+from toolaxis.path.mending import FurtherPasses
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.report.figures.plan_overview import overview_picture
+from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.messages import place
 from toolaxis.shape.measure import mean_width
 
@@ -55,6 +59,23 @@ def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
     at = op.face.evaluate(zones[0].loops[0].mean(axis=0)[None]).point[0]
     assert f"{zones[0].area:.2f} mm2, around {place(at)}:" in said and not np.allclose(at, 0)
     assert made.done and made.orientation.unreached == 0, "no clean-up: the judge will not overlook it"
+
+
+def test_zones_are_those_that_the_proof_found(small_plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: they were looked for once more, without the places between passes at which the proof had looked."""
+    whole, (op,) = FaceProblem.completed, small_plan.operations
+    (seen,) = leaving(op, 0.001)
+
+    def _completed(task: FaceProblem, *laid: Any) -> FurtherPasses:
+        made = whole(task, *laid)
+        return made._replace(zones=(*made.zones, seen))
+
+    monkeypatch.setattr(FaceProblem, "completed", _completed)
+    made = ta.plan(small_plan.part, small_plan.tools[0], 0.1, workers=1).operations[0]
+    assert any(zone.loops is seen.loops for zone in made.zones)
+    assert made.orientation.unreached == pytest.approx(sum(zone.area for zone in made.zones) / op.face.area)
+    tried = try_axis(small_plan, op, op.orientation.axis)
+    assert any(zone.loops is seen.loops for zone in tried.zones)
 
 
 @pytest.mark.parametrize(("size", "wanted"), [((40.0, 3.0), 2 * 120 / 86), ((5.0, 5.0), 2.5)])

@@ -1,6 +1,7 @@
 """Plans with a rack of tools: what is chosen, what smaller tools take over, and how that is written, judged and posted.
 """
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,11 +9,12 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
+from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.job.planning.rack import _merge, _Waiting
+from toolaxis.job.planning.rack import _merge, _Screen, _Waiting
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -21,7 +23,9 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
+from toolaxis.regions.tool_choice import ToolChain
 from toolaxis.report.tables import open_table, plan_table, verdict_table
+from toolaxis.report.warnings import warnings_of
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 
@@ -221,6 +225,80 @@ def test_stopped_within_a_tool_it_keeps_what_that_tool_finished(monkeypatch: pyt
     made = ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1,
                    progress=Progress(None, lambda: bool(stopped)))
     assert made.outcome == "cancelled" and [op.done for op in made.operations] == [False, True]
+
+
+def two_sheets() -> Part:
+    """Two gentle sheets, 24 x 24 mm each and 40 mm apart, and a wall along one side of the first."""
+    sheet, wall = walled().faces
+    moved = ta.Face.from_bspline(sheet.surface.control[..., :3] + [0.0, 40.0, 0.0])
+    return Part.from_faces([sheet, moved, wall])
+
+
+def stopped_at(words: str, part: Part | None = None) -> Plan:
+    """A plan that is stopped at the first report in which there are some words."""
+    seen: list[str] = []
+    stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any(words in one for one in seen))
+    return ta.plan(part or two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1, progress=stopping)
+
+
+def whole_area(plan: Plan) -> float:
+    found = plan.account
+    return found.machined + found.unreachable + found.not_begun + found.open
+
+
+@pytest.mark.parametrize("words, begun", [("choice of tools", 0), ("face 2 (2 of 2)", 1),
+                                          ("Ball D3", 2)])
+def test_a_stopped_plan_tells_of_every_face(words: str, begun: int) -> None:
+    """Found: its areas were those of the faces that were begun, a tenth of the part looked like all of it."""
+    part = two_sheets()
+    areas_of_both = part.face(1).area + part.face(2).area
+    made = stopped_at(words, part)
+    assert made.outcome == "cancelled" and len(made.operations) == begun and all(op.done for op in made.operations)
+    found = made.account
+    assert found.area == pytest.approx(areas_of_both, rel=1e-9) == whole_area(made)
+    missing = {one.label: one.area for one in made.unplanned if one.whole}
+    assert missing == pytest.approx({str(n): part.face(n).area for n in (1, 2)[begun:]})
+    rests = {one.label: one.area for one in made.unplanned if not one.whole}
+    left = {op.face.label: sum(zone.area for zone in op.zones if zone.at_wall) for op in made.operations if op.zones}
+    assert rests == pytest.approx(left, rel=1e-3), "what the large ball leaves at the wall waits for the small one"
+    assert found.not_begun == pytest.approx(sum(missing.values()) + sum(rests.values()))
+    assert found.open < 1e-3 * found.area, "nothing was tried in vain"
+
+
+def test_what_was_not_begun_is_told_in_table_file_and_page(tmp_path: Path) -> None:
+    made = stopped_at("face 2 (2 of 2)")
+    area, rest = (one.area for one in sorted(made.unplanned, key=lambda one: one.label == "1"))
+    words = f"not begun when the plan was stopped: {area + rest:.1f} mm2, of faces "
+    assert words in str(plan_table(made).caption) and f"1 ({rest:.1f} mm2 of it)" in str(plan_table(made).caption)
+    assert any(words in one.text and one.level == "stop" for one in warnings_of(made, None))
+    with stage_folder(tmp_path / "out") as stage:
+        write_plan(made, stage.folder)
+        stage.publish()
+    part = json.loads((tmp_path / "out" / "plan.json").read_text())["part"]
+    assert part["not_begun"] == pytest.approx(area + rest)
+    assert part["area"] == pytest.approx(part["machined"] + part["unreachable"] + part["open"] + part["not_begun"])
+    assert {(one["label"], one["why"], one["whole"]) for one in part["unplanned"]} == {
+        ("2", "not_begun", True), ("1", "rest_not_begun", False)}
+    back = read_plan(tmp_path / "out")
+    assert back.account == made.account and back.unplanned == made.unplanned
+    judged = verdict_document(back, ta.verify(back))["part"]
+    assert judged["area"] == pytest.approx(part["area"]) and judged["not_begun"] == part["not_begun"]
+    assert judged["open"] == pytest.approx(judged["area"] - judged["verified"] - judged["not_begun"])
+
+
+def test_stopped_in_the_choice_of_the_next_tool_it_keeps_all_of_a_tool(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: the first face asked for the next tool, was stopped there, and took the others' operations with it."""
+    whole = _Screen.chains
+
+    def _stopped(screen: _Screen, face: ta.Face, begin: int) -> tuple[ToolChain, ...]:
+        if begin:
+            raise Cancelled("cancelled by the user")
+        return whole(screen, face, begin)
+
+    monkeypatch.setattr(_Screen, "chains", _stopped)
+    made = ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1)
+    assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["1", "2"]
+    assert whole_area(made) == pytest.approx(made.account.area) and made.account.not_begun > 24 * 2
 
 
 @pytest.mark.parametrize("given, said", [

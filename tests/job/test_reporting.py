@@ -19,6 +19,7 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput, MissingBackend
 from toolaxis.job.files.plan_folder import OF_PLAN, read_plan, stage_folder, write_json, write_plan
 from toolaxis.job.files.verdict_maps import read_views, write_views
+from toolaxis.job.output.post import verdict_of
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document, verify_plan
 from toolaxis.numeric.equal_area import from_equal_area
@@ -227,7 +228,7 @@ def test_the_same_plan_gives_the_same_bytes(whole: Path, tmp_path: Path) -> None
 
 def test_without_a_verdict_it_says_so_first(folder: Path) -> None:
     found = Page(report(folder).read_text(encoding="utf-8"))
-    assert "verdict: not judged" in found.text
+    assert "verdict on what was made: not judged yet" in found.text
     levels = [attributes["class"] for tag, attributes in found.tags if tag == "li"]
     assert levels[0] == "stop" and "stop not judged: run toolaxis verify" in found.text
     assert not any(name.endswith(":scallop") for name in found.data)
@@ -249,6 +250,30 @@ def test_what_is_missing_comes_first(small_plan: Plan, tmp_path: Path, outcome: 
     assert f"plan: {outcome}" in found.text and "1 of 2" in found.text
     names = [trace["name"] for trace in found.data["scene"]["figure"]["data"]]
     assert "2: face 1, no axis" in names
+
+
+def test_a_face_without_an_axis_does_not_spoil_the_verdict_on_the_others(small_plan: Plan, tmp_path: Path) -> None:
+    """Found: it said "verdict: FAILED" where every pass that was made had passed."""
+    (op,) = small_plan.operations
+    lost = replace(op, number=2, path=None, frame=None, zones=(), unreachable=0.25 * op.face.area,
+                   orientation=replace(op.orientation, axis=None, outcome="infeasible", reasons=("a wall",), lobes=()))
+    folder = written(replace(small_plan, operations=(op, lost), outcome="incomplete"), tmp_path / "p")
+    plan = read_plan(folder)
+    document = verdict_document(plan, verify_plan(plan))
+    write_json(document, folder / "verdict.json")
+    assert (document["passed"], document["made_passed"]) == (False, True)
+    found = Page(report(folder).read_text(encoding="utf-8"))
+    area = op.face.area
+    assert "verdict on what was made: passed (1 of 1 operation); plan: incomplete" in found.text
+    assert (f"stays open: {area:.1f} of {2 * area:.1f} mm2 (50.0 %), {area / 4:.1f} mm2 of it proven out of reach"
+            ) in found.text
+    assert "FAIL" not in found.text and ("p", {"class": "verdict part"}) in found.tags
+    assert verdict_of(folder) == "passed"
+    spoilt = {**document, "made_passed": False, "operations": [{**document["operations"][0], "passed": False}]}
+    write_json(spoilt, folder / "verdict.json")
+    failed = Page(report(folder).read_text(encoding="utf-8"))
+    assert "verdict on what was made: FAILED (0 of 1 operation)" in failed.text and verdict_of(folder) == "FAILED"
+    assert ("p", {"class": "verdict bad"}) in failed.tags
 
 
 def test_names_are_text_and_never_code(small_plan: Plan, tmp_path: Path) -> None:

@@ -173,9 +173,9 @@ def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
     stop = Progress(_report, lambda: bool(asked))
     whole = turned.with_zones
     if stage == "clean-up zones":
-        def _zones(plan, op, progress):
+        def _zones(plan, op):
             asked.append(stage)
-            return whole(plan, op, progress)
+            return whole(plan, op)
 
         monkeypatch.setattr(turned, "with_zones", _zones)
     with activate_progress(stop):

@@ -17,6 +17,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import locations_text
 from toolaxis.post.context import Options
 from toolaxis.post.dialects.registry import APT
+from toolaxis.report.verdict_words import PASSED
 
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
@@ -51,8 +52,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                     "missing": missing})
     for name in files:
         say(f"toolaxis: {folder / name}")
-    if verdict != "passed":
-        say(f"toolaxis: warning: the plan's verdict: {verdict}")
+    if verdict != PASSED:
+        say(f"toolaxis: warning: verdict on the operations: {verdict}")
     if missing:
         say(f"toolaxis: not in the program, for want of an axis: {', '.join(missing)}")
     return 1 if missing else 0

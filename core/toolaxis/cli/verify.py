@@ -13,7 +13,9 @@ from toolaxis.job.files.verdict_maps import write_views
 from toolaxis.job.output.verify import not_judged, passes, verdict_document, verify_plan
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
+from toolaxis.report.areas_aside import describe_open
 from toolaxis.report.tables import verdict_table
+from toolaxis.report.verdict_words import count_passed, name_verdict
 from toolaxis.verify.verdict import Verdict
 
 #: Operations that are named with what they leave; the others are counted.
@@ -58,6 +60,12 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         say(f"toolaxis: not checked: {', '.join(missing)}")
     for reason in document["reasons"]:
         say(f"toolaxis: {reason}")
+    if not verdict.unjudged:
+        count = f" ({count_passed(document)})" if verdict.operations else ""
+        say(f"toolaxis: verdict on what was made: {name_verdict(document)}{count}")
+    still_open = describe_open(plan)
+    if still_open:
+        say(f"toolaxis: {still_open}")
     if plan.outcome == "cancelled":
         say("toolaxis: the plan was cancelled before all sub-surfaces were done")
     if verdict.unjudged:

@@ -22,6 +22,7 @@ from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import Option, Plan, PlanInputs
 from toolaxis.plan.schema import NAME, VERSION, check
 from toolaxis.plan.timing import MachiningTime, Order
+from toolaxis.plan.unplanned_area import UnplannedArea
 from toolaxis.plan.zone import Zone
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import split_at_kinks
@@ -162,7 +163,7 @@ def account_document(found: PartAccount) -> Document:
     found : PartAccount
     """
     return {"area": found.area, "machined": found.machined, "unreachable": found.unreachable, "open": found.open,
-            "length": found.length, "bound": found.bound or None, "gap": found.gap}
+            "not_begun": found.not_begun, "length": found.length, "bound": found.bound or None, "gap": found.gap}
 
 
 def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
@@ -191,7 +192,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "stock_faces": [] if plan.part.stock is None else sorted(plan.part.stock.faces),
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
                  **account_document(plan.account),
-                 "held": [one._asdict() for one in plan.held]},
+                 "held": [one._asdict() for one in plan.held],
+                 "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned]},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
         "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid)},
@@ -288,4 +290,6 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")),
                 _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
                 tuple(Fault(sentence) for sentence in document.get("faults", ())),
-                held=tuple(HeldFace(**one) for one in document["part"].get("held", ())))
+                held=tuple(HeldFace(**one) for one in document["part"].get("held", ())),
+                unplanned=tuple(UnplannedArea(**{**one, "point": tuple(one["point"])})
+                                for one in document["part"].get("unplanned", ())))

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
+from toolaxis.plan.unplanned_area import HIDDEN
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HELD_SIDE
@@ -30,7 +31,8 @@ class OpenPlace(NamedTuple):
     label : str, of the sub-surface;  area : float, mm^2;  unreachable : float, mm^2 of it that are proven to be out of
     reach of every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float, least radius of its
     hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work ended the search there;
-    avoided : tuple of str, labels of faces to be avoided that keep the cutter from it.
+    avoided : tuple of str, labels of faces to be avoided that keep the cutter from it;  beneath : str, label of the
+    face under which it lies as their skin is seen.
     """
 
     label: str
@@ -40,6 +42,7 @@ class OpenPlace(NamedTuple):
     radius: float
     limited: bool
     avoided: tuple[str, ...] = ()
+    beneath: str = ""
 
 
 class OpenFace(NamedTuple):
@@ -85,6 +88,8 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
     """
     operations = {op.number: op for op in plan.operations}
     found = [_place(operations[one.operation], one) for one in list_open_faces(plan) if one.area >= LEAST]
+    found += [OpenPlace(one.label, one.area, 0.0, np.array(one.point), np.inf, False, beneath=one.beneath)
+              for one in plan.unplanned if one.why == HIDDEN and one.area >= LEAST]
     return tuple(sorted(found, key=lambda one: (-one.area, one.label)))
 
 
@@ -110,6 +115,8 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     smallest : float
         Radius of the smallest ball, or corner, of the tools, mm.
     """
+    if place.beneath:
+        return f"face {place.label} without face {place.beneath}: it lies under that as their skin is seen"
     if HELD_SIDE in place.avoided:
         return "another clamping: it lies beside the held side"
     if place.avoided:

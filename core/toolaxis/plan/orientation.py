@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.plan.choices import ISO
+from toolaxis.plan.zone import Zone
 
 Array = NDArray[np.float64]
 
@@ -83,6 +84,9 @@ class Orientation:
     ideal : float
         What passes with this axis tend to as the scallop height goes to zero, mm, each place cut in its best direction;
         no bound.  0 where it is not known.
+    zones : tuple of Zone
+        What its passes leave higher than the scallop limit, in (u, v) of the face, as it was found with their proof; an
+        operation takes it over.
     """
 
     axis: Array | None
@@ -102,6 +106,7 @@ class Orientation:
     lead: float | None = None
     pattern: str = ISO
     ideal: float = 0.0
+    zones: tuple[Zone, ...] = ()
 
     @property
     def ideal_of_cut(self) -> float:

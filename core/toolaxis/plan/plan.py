@@ -17,6 +17,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.timing import Order
+from toolaxis.plan.unplanned_area import UnplannedArea
 from toolaxis.plugins import one_of
 from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
@@ -33,6 +34,8 @@ _LIE = {PLANES: "planes", FIELD: "a field"}
 INDEX_SECONDS = 6.0
 #: What a change of tools is reckoned to take, s.
 CHANGE_SECONDS = 10.0
+#: Share of the faces that may stay open in a plan with several tools that is complete.
+LEFT_OPEN = 1e-3
 
 
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
@@ -260,6 +263,8 @@ class Plan:
         Whether the method checks the cutter on the machined face at points only; not written, as the method tells it.
     held : tuple of HeldFace
         What of the faces that were asked for lies in the side that is held: no operation is to machine it.
+    unplanned : tuple of UnplannedArea
+        What else of them is in no operation, as where the plan was stopped.
     """
 
     part: Part
@@ -278,6 +283,7 @@ class Plan:
     faults: tuple[Fault, ...] = ()
     at_points: bool = False
     held: tuple[HeldFace, ...] = ()
+    unplanned: tuple[UnplannedArea, ...] = ()
 
     def part_around(self, number: int) -> Part:
         """The part as it stands around a face: where it has blades, the other ones are obstacles.
@@ -301,7 +307,7 @@ class Plan:
     @property
     def account(self) -> PartAccount:
         """How much of its faces it machines."""
-        return PartAccount.of(self.operations)
+        return PartAccount.of(self.operations, self.unplanned)
 
     @property
     def used_tools(self) -> tuple[Tool, ...]:

@@ -132,7 +132,7 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
     machine = program.machine
     rows = [["program", file], ["control", dialect.title], ["machine", f"{machine.name} ({machine.chain})"],
             ["part", program.plan.part.source or "-"], ["scallop height", f"{program.inputs.scallop:g} mm"],
-            ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict of the plan", verdict],
+            ["machining tolerance", f"{program.inputs.tolerance.gouge:g} mm"], ["verdict on the operations", verdict],
             ["not checked", ", ".join(program.plan.not_checked)]]
     stock = program.plan.part.stock
     if stock is not None:

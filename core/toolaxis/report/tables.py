@@ -12,6 +12,7 @@ from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
+from toolaxis.report.areas_aside import describe_held, describe_hidden, describe_not_begun
 from toolaxis.shape.stock import format_faces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
@@ -119,8 +120,8 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, stock_line(plan), _ideal(plan), points, reckoning(plan),
-             _order(plan))
+    aside = (describe_not_begun(plan), describe_hidden(plan), describe_held(plan))
+    notes = (_of_part(plan), *aside, _BOUNDS, stock_line(plan), _ideal(plan), points, reckoning(plan), _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
 
 
@@ -174,19 +175,6 @@ def _of_part(plan: Plan) -> str:
     proven = f"proven out of reach: {found.unreachable:.1f} mm2; " if found.unreachable >= 0.05 else ""
     return (f"machined: {found.machined:.1f} of {found.area:.1f} mm2 ({share:.1f} %) with {len(plan.used_tools)} of "
             f"{len(plan.tools)} tools; {proven}open: {found.open:.1f} mm2")
-
-
-def _describe_held(plan: Plan) -> str:
-    """What of the faces is held in the clamping, and so is not asked for; empty where no side is held."""
-    if not plan.inputs.held:
-        return ""
-    area = sum(one.area for one in plan.held)
-    if not plan.held:
-        return f"held in this clamping ({plan.inputs.held}): nothing of the faces that are asked for"
-    shown = [one.label if one.whole else f"{one.label} ({one.area:.1f} mm2 of it)" for one in plan.held]
-    more = f" and {len(shown) - _OPEN_ROWS} more" if len(shown) > _OPEN_ROWS else ""
-    return (f"held in this clamping ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
-            f"{', '.join(shown[:_OPEN_ROWS])}{more}")
 
 
 def _over_ideal(operations: Sequence[Operation]) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
+from toolaxis.report.areas_aside import describe_hidden, describe_not_begun
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,8 @@ def warnings_of(plan: Plan, verdict: Mapping[str, Any] | None) -> tuple[Warning,
     found += [Warning("mind", text) for text in plan.part.warnings]
     if plan.machine is not None and plan.machine.machine.assumed:
         found.append(Warning("mind", f"assumed in the machine's file: {', '.join(plan.machine.machine.assumed)}"))
+    if hidden := describe_hidden(plan):
+        found.append(Warning("mind", hidden))
     found += [*left, *_of_clean_up(plan)]
     order = {"stop": 0, "mind": 1, "note": 2}
     return tuple(sorted(found, key=lambda one: order[one.level]))
@@ -52,7 +55,9 @@ def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
     """What is left to clean-up, and what has no axis; turned copies with the same fate count with their original."""
     left, lost = [], []
     if plan.outcome == "cancelled":
-        lost.append(Warning("stop", "the plan was cancelled before all sub-surfaces were done: it is not whole"))
+        missing = describe_not_begun(plan)
+        more = f"; {missing}" if missing else ""
+        lost.append(Warning("stop", f"the plan was cancelled before all sub-surfaces were done: it is not whole{more}"))
     copies = {} if plan.blades is None else plan.blades.copies
     numbers = {op.number for op in plan.operations if not op.done}
     for op in plan.operations:
@@ -77,8 +82,8 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         return [Warning("stop", "not judged: run toolaxis verify on this folder before anything is machined")]
     found = []
     failed = {op["name"] for op in verdict["operations"] if not op["passed"]}
-    if not verdict["passed"] and (failed or not verdict.get("unjudged")):
-        found.append(Warning("stop", "the verdict is FAIL" + (f": {', '.join(sorted(failed))}" if failed else "")))
+    if failed:
+        found.append(Warning("stop", f"the verdict is FAIL: {', '.join(sorted(failed))}"))
     judged = {op["name"] for op in verdict["operations"]}
     unjudged = [op.name for op in plan.operations if op.done and op.name not in judged]
     if unjudged:

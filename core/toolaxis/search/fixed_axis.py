@@ -106,6 +106,8 @@ _LONGER = 1.02
 #: Places along a side of a grid that tells how much of its range a face fills, and places on the face that tell how
 #: much stays high between passes over a skin.
 _COARSE, _SAMPLES = 60, 40_000
+#: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
+_SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
 #: Where that is too much, passes are laid for this share of the scallop height, and again, down to the second share.
 _CLOSER, _CLOSEST = 0.95, 0.87
 
@@ -620,7 +622,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     words = left_reasons(made.zones, job.worth.face)
     found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
-                        ideal=job.worth.ideal_length(one.axis))
+                        ideal=job.worth.ideal_length(one.axis), zones=made.zones)
     return CheckedCandidate(one, found, proof, path, made.longer)
 
 
@@ -633,14 +635,22 @@ def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
     if worth.face.surface.stand_in is None:
         return False
     filled = max(len(worth.face.grid(_COARSE, _COARSE)), 1) / _COARSE**2
-    count = int(np.sqrt(_SAMPLES / filled))
-    uv = worth.face.grid(count, count)
+    uv = _scattered_places(worth.face, int(_SAMPLES / filled))
     for zone in made.zones:
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
     d = worth.face.evaluate(uv)
     area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
     high = Excess(worth.face, worth.tool, made.path, worth.allowance + FACTOR * worth.scallop)(uv) > 0
     return bool(area[high].sum() > OVERLOOKED * area.sum())
+
+
+def _scattered_places(face: Face, count: int) -> Array:
+    """Parameters of a face, (n, 2), of so many places over its range: along no line, as ridges of straight passes are,
+    which would lie between the lines of a grid, or on them."""
+    u0, u1, v0, v1 = face.bounds
+    share = np.arange(1, count + 1)[:, None] * _SCATTERED % 1.0
+    uv = np.array([u0, v0]) + share * np.array([u1 - u0, v1 - v0])
+    return np.asarray(uv[face.contains(uv)])
 
 
 def _proven_without_refused(job: FaceProblem, placed: Layout) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:

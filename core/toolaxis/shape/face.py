@@ -258,10 +258,11 @@ class Face:
 
     @cached_property
     def area(self) -> float:
-        """Area of the face, mm^2, to 1e-5 of itself."""
+        """Area of the face, mm^2, to 1e-5 of itself; that of a skin without what of its faces lies under others."""
         own = self.own_faces
         if len(own) > 1 and self.fills_outline:
-            return sum(face.area for face in own)
+            hidden: float = getattr(self.surface, "hidden_area", 0.0)
+            return sum(face.area for face in own) - hidden
         return measure.area(self)
 
     @cached_property

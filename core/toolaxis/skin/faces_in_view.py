@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs
 from toolaxis.shape.surface import Derivatives
+from toolaxis.skin.covered_parts import Loops, covered_parts
 from toolaxis.skin.seen_face import SeenFace
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ class FacesInView:
     def owners(self, places: Array) -> Index:
         """Which of the faces lies at places of the plane, (n,); -1 beyond the outline.
 
-        Between two faces that do not quite meet, the nearer one goes on.
+        Between two faces that do not quite meet, the nearer one goes on; of two above each other it is the upper one.
 
         Parameters
         ----------
@@ -41,15 +42,28 @@ class FacesInView:
         owner = np.full(len(places), -1, dtype=np.intp)
         low, high = self._boxes
         near = np.asarray(((places >= low[:, None]) & (places <= high[:, None])).all(axis=2))
-        for k in np.flatnonzero(near.any(axis=1)):
+        for k in map(int, np.flatnonzero(near.any(axis=1))):
             left = np.flatnonzero(near[k] & (owner < 0))
             if len(left):
-                owner[left[self.seen[k].contains(places[left])]] = k
+                mine = left[self.seen[k].contains(places[left])]
+                owner[mine[~self._is_covered(k, places[mine])]] = k
         gap = np.flatnonzero(owner < 0)
         gap = gap[inside(self._around, places[gap])] if len(gap) else gap
         if len(gap):
             owner[gap] = self.nearest(places[gap])
         return owner
+
+    @cached_property
+    def covered(self) -> tuple[tuple[Loops, ...], ...]:
+        """For each face the parts of it, loops in the plane, above which another one lies."""
+        return covered_parts(self.seen)
+
+    def _is_covered(self, number: int, places: Array) -> NDArray[np.bool_]:
+        """Whether another face lies above one of them at places of the plane, (n,)."""
+        found = np.zeros(len(places), dtype=bool)
+        for part in self.covered[number]:
+            found |= inside(slabs(part), places)
+        return found
 
     def evaluate(self, places: Array, owner: Index) -> Derivatives:
         """Points of faces at places of the plane, and their derivatives with these.

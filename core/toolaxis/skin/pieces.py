@@ -5,20 +5,18 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
-from toolaxis.numeric.polygon_boolean import divide_nearly
-from toolaxis.numeric.polygons import inside, signed_area, slabs, stations, walk
+from toolaxis.numeric.polygon_boolean import divide_nearly, without
+from toolaxis.numeric.polygons import signed_area, stations, walk
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joining.joined_surface import name_of
+from toolaxis.skin.covered_parts import Loops, polygon_area
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.view_surface import ViewSurface
 
 Array = NDArray[np.float64]
-Loops = tuple[Array, ...]
 
 #: Share of a member's area in its parameters that may be missing of the whole.
 _WHOLE = 1e-6
-#: Places along each side of the box of a part at which it is asked whose it is.
-_ASKED = 40
 #: Pieces of the longest side of a loop that is carried over to a member's own parameters.
 _DIVIDED = 128
 
@@ -59,14 +57,10 @@ def _in_box(face: Face, member: Member, letters: str) -> list[Face]:
     for axis, (low, high) in enumerate(member.box.T):
         loops = clip_half_plane(clip_half_plane(loops, axis, float(low), True), axis, float(high), False)
     own = [tuple(_own(member, loop) for loop in piece) for piece in outer_with_holes(loops)]
-    if abs(sum(map(_area, own)) - _area(member.face.outline)) <= _WHOLE * _area(member.face.outline):
+    whole = polygon_area(member.face.outline)
+    if abs(sum(map(polygon_area, own)) - whole) <= _WHOLE * whole:
         return [member.face]
     return [member.face.trimmed(piece, member.face.label + letters) for piece in own]
-
-
-def _area(loops: Loops) -> float:
-    """Area of a polygon with holes in the parameters."""
-    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
 
 
 def _own(member: Member, uv: Array) -> Array:
@@ -79,13 +73,16 @@ def _own(member: Member, uv: Array) -> Array:
 def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -> tuple[Face, ...]:
     """Pieces of the members of a face whose parameters are places in a plane."""
     loops = face.outline
-    if face.fills_outline:
-        return surface.members
     pieces: list[Face] = []
-    for number, seen in enumerate(surface.seen):
-        parts = _common(seen.outline, loops)
-        if parts is not None:
-            parts = [part for part in parts if _is_seen(part, number, surface)]
+    for seen, covered in zip(surface.seen, surface.covered, strict=True):
+        visible = seen.outline
+        for hidden in covered:
+            visible = without(visible, hidden)
+        parts: list[Loops] | None = [visible]
+        if not face.fills_outline:
+            parts = _common(visible, loops)
+        elif covered:
+            parts = outer_with_holes(visible)
         if parts is not None and any(part is seen.outline for part in parts):
             pieces.append(seen.face)
             continue
@@ -95,16 +92,6 @@ def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -
         else:
             pieces += [seen.face.trimmed(part, seen.face.label + letters) for part in own]
     return tuple(pieces)
-
-
-def _is_seen(part: Loops, number: int, surface: ViewSurface) -> bool:
-    """Whether a part of a member in the plane is not another member's that lies above it; so too where nobody can tell.
-    """
-    low, high = part[0].min(axis=0), part[0].max(axis=0)
-    share = (np.arange(_ASKED) + 0.5) / _ASKED
-    places = low + (high - low) * np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
-    places = places[inside(slabs(part), places)]
-    return not len(places) or bool((surface.owners(places) == number).mean() > 0.5)
 
 
 def _carry_over_all(seen: SeenFace, parts: list[Loops]) -> list[Loops] | None:
@@ -129,10 +116,10 @@ def _common(member: Loops, piece: Loops) -> list[Loops] | None:
         both, apart = divide_nearly(member, piece)
     except InvalidInput:
         return None
-    if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * _area(member)]:
+    if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * polygon_area(member)]:
         return [member]
-    least = _WHOLE * min(_area(member), _area(piece))
-    return [part for part in outer_with_holes(both) if _area(part) > least]
+    least = _WHOLE * min(polygon_area(member), polygon_area(piece))
+    return [part for part in outer_with_holes(both) if polygon_area(part) > least]
 
 
 def _carry_over(seen: SeenFace, loop: Array) -> Array | None:

@@ -51,6 +51,25 @@ class SeenFace:
         """
         return np.asarray((points - self.origin) @ self.rows.T)
 
+    def heights_of(self, points: Array) -> Array:
+        """Heights of points along the direction from which the face is seen, (n,) mm.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            mm
+        """
+        return np.asarray((points - self.origin) @ np.cross(self.rows[0], self.rows[1]))
+
+    def heights_at(self, places: Array) -> Array:
+        """Heights of the face at places of the plane, (n,) mm.
+
+        Parameters
+        ----------
+        places : (n, 2) array
+        """
+        return self.heights_of(self.evaluate(places).point)
+
     @cached_property
     def outline_uv(self) -> tuple[Array, ...]:
         """The face's loops with further points on them, in its own parameters."""

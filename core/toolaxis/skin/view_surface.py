@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,7 @@ from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.continuation import Continuation, Heights
+from toolaxis.skin.covered_parts import Loops, places_in, polygon_area
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.tangent_planes import TangentPlanes, heights_beyond
@@ -32,6 +34,19 @@ _RISE = 0.04
 _BAND = 2.0
 #: Parts of the range at whose ends nothing about the surface is smooth.
 _PARTS = 12
+
+
+class HiddenPart(NamedTuple):
+    """A part of a member that lies under another one as they are seen together: no passes over the skin machine it.
+
+    face : int, the member's number;  beneath : int, the other one's;  area : float, mm^2;  point : (3,) array, mm, in
+    the middle of it.
+    """
+
+    face: int
+    beneath: int
+    area: float
+    point: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +82,31 @@ class ViewSurface(NurbsSurface):
     @cached_property
     def _view(self) -> FacesInView:
         return FacesInView(self.seen, self.outline)
+
+    @property
+    def covered(self) -> tuple[tuple[Loops, ...], ...]:
+        """For each member the parts of it, loops in the plane, above which another one lies."""
+        return self._view.covered
+
+    @cached_property
+    def hidden(self) -> tuple[HiddenPart, ...]:
+        """What of the members lies under others, the largest first."""
+        found = [self._hidden_part(one, part) for one, parts in zip(self.seen, self.covered, strict=True)
+                 for part in parts]
+        return tuple(sorted(found, key=lambda one: -one.area))
+
+    def _hidden_part(self, one: SeenFace, part: Loops) -> HiddenPart:
+        places = places_in(part)
+        d = one.evaluate(places)
+        area = float(polygon_area(part) * np.linalg.norm(np.cross(d.su, d.sv), axis=1).mean())
+        middle = int(np.argmin(np.linalg.norm(d.point - d.point.mean(axis=0), axis=1)))
+        above = int(self.owners(places[middle][None])[0])
+        return HiddenPart(one.face.number, self.members[above].number, area, d.point[middle])
+
+    @cached_property
+    def hidden_area(self) -> float:
+        """Area of the members that lies under others, mm^2."""
+        return sum(one.area for one in self.hidden)
 
     def owners(self, places: Array) -> NDArray[np.intp]:
         """Which of the members lies at places of the plane, (n,); -1 beyond the outline.

@@ -18,6 +18,7 @@ from toolaxis.post.dialects.registry import APT, dialect_named, tip_control_of
 from toolaxis.post.program import bare_program, program_of, program_text
 from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
 from toolaxis.post.tcp_program import moves, moving_text
+from toolaxis.report.verdict_words import FAILED, name_verdict
 
 
 def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,
@@ -89,7 +90,7 @@ def _choose_angles(plan: Plan, mounting: Mounting) -> Plan:
 
 
 def verdict_of(folder: Path) -> str:
-    """What verdict.json in a plan's folder says, in a word or two.
+    """What verdict.json in a plan's folder says of the operations that were made, in a word or two.
 
     Parameters
     ----------
@@ -97,10 +98,6 @@ def verdict_of(folder: Path) -> str:
     """
     path = folder / "verdict.json"
     if not path.is_file():
-        return "not judged yet: run toolaxis verify"
+        return name_verdict(None)
     found = read_json(path)
-    if not isinstance(found, dict):
-        return "FAILED"
-    if found.get("unjudged") and all(op["passed"] for op in found["operations"]):
-        return "not judged to the end: run toolaxis verify again"
-    return "passed" if found.get("passed") is True else "FAILED"
+    return name_verdict(found) if isinstance(found, dict) else FAILED

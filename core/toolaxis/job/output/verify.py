@@ -180,6 +180,7 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     """
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
+            "made_passed": made_passes(plan, verdict),
             "complete": not verdict.unjudged, "unjudged": list(verdict.unjudged),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
                         *(f"between operations: {why}" for why in plan.in_the_way),
@@ -190,11 +191,12 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
 
 def _account(plan: Plan, verdict: Verdict) -> dict[str, float]:
     """How much of the faces that were asked for passed, mm^2."""
-    area = plan.account.area
+    planned = plan.account
     passed = sum(op.area - op.declared for op in verdict.operations if op.passed)
-    verified = min(float(passed), area)
-    return {"area": area, "verified": verified, "unreachable": plan.account.unreachable,
-            "open": max(area - verified - plan.account.unreachable, 0.0)}
+    verified = min(float(passed), planned.area)
+    left = planned.area - verified - planned.unreachable - planned.not_begun
+    return {"area": planned.area, "verified": verified, "unreachable": planned.unreachable, "open": max(left, 0.0),
+            "not_begun": planned.not_begun}
 
 
 def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:
@@ -222,6 +224,17 @@ def passes(plan: Plan, verdict: Verdict) -> bool:
     verdict : Verdict
     """
     return plan.outcome == "complete" and verdict.passed
+
+
+def made_passes(plan: Plan, verdict: Verdict) -> bool:
+    """Whether every operation that was made passed, and nothing is in the way between them, whatever stays open.
+
+    Parameters
+    ----------
+    plan : Plan
+    verdict : Verdict
+    """
+    return verdict.passed and not plan.in_the_way and not plan.faults
 
 
 def _number(value: float) -> float | None:

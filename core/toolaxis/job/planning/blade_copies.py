@@ -85,7 +85,8 @@ def append_operations(plan: Plan, other: Plan) -> Plan:
     """
     more = tuple(renumber(op, len(plan.operations)) for op in other.operations)
     worst = next((name for name in ("cancelled", "incomplete") if name in (plan.outcome, other.outcome)), "complete")
-    return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults))
+    return replace(plan, operations=plan.operations + more, outcome=worst, faults=(*plan.faults, *other.faults),
+                   unplanned=(*plan.unplanned, *other.unplanned))
 
 
 def renumber(op: Operation, before: int) -> Operation:
@@ -171,17 +172,18 @@ def _add_zones_anew(plan: Plan, numbers: set[int], progress: Progress) -> Plan:
     made = []
     try:
         for op in plan.operations:
-            made.append(_add_zones(plan, op, progress) if op.number in numbers else op)
+            progress.check()
+            made.append(_add_zones(plan, op) if op.number in numbers else op)
     except Cancelled:
         return replace(plan, outcome="cancelled")
     outcome = plan.outcome if plan.outcome == "cancelled" else outcome_of(made, plan.blades)
     return replace(plan, operations=tuple(made), outcome=outcome)
 
 
-def _add_zones(plan: Plan, op: Operation, progress: Progress) -> Operation:
+def _add_zones(plan: Plan, op: Operation) -> Operation:
     """An operation with its zones; a failed one where the program fails on them."""
     try:
-        return with_zones(plan, op, progress)
+        return with_zones(plan, op)
     except Cancelled:
         raise
     except Exception as reason:
@@ -275,8 +277,8 @@ def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) ->
                        path.normal @ turn.T, path.kind, path.breaks)
     feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
     left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
-    return Operation(op.number, piece, op.tool, replace(found, axis=axis, feed=feed, map=None, lobes=(), evaluations=1,
-                                               reasons=(f"turned copy of {op.name}", *left)), carried)
+    return Operation(op.number, piece, op.tool, replace(found, axis=axis, feed=feed, map=None, lobes=(), zones=(),
+                                               evaluations=1, reasons=(f"turned copy of {op.name}", *left)), carried)
 
 
 def _groups(task: FaceProblem, means: _Means) -> tuple[CheckSurfaces, ...]:
@@ -342,4 +344,4 @@ def _replan_turned(op: Operation, piece: Face, task: FaceProblem, axis: Array,
         return None, "; ".join(found.reasons)
     note = f"turned copy of {op.name}, its passes laid anew: the faces differ"
     made = replace(found, evaluations=2, reasons=(note, *found.reasons))
-    return Operation(op.number, piece, op.tool, made, path, frame_of(piece, made, first_datum(op))), ""
+    return Operation(op.number, piece, op.tool, made, path, frame_of(piece, made, first_datum(op)), made.zones), ""

@@ -52,7 +52,8 @@ def add_clean_up_zones(plan: Plan, workers: int = 1, progress: Progress = NO_PRO
     plan = _without_fillets(plan, stage)
     asked = [op for op in plan.operations if op.done and _can_be_outlined(plan, op)]
     while asked:
-        found = abreast(lambda k, inner: with_zones(plan, asked[k], inner), len(asked), workers, stage)  # noqa: B023
+        stage.check()
+        found = abreast(lambda k, _: with_zones(plan, asked[k]), len(asked), workers, stage)  # noqa: B023
         if found.cancelled:
             return replace(plan, outcome="cancelled")
         made = {op.number: replace(op, face=asked[k].face) for k, op in found.results.items()}
@@ -95,29 +96,28 @@ def _can_be_outlined(plan: Plan, op: Operation) -> bool:
     return op.orientation.lead is None or strategy_of(plan.inputs.method).in_layers
 
 
-def zones_of(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> tuple[Zone, ...]:
-    """The zones that one operation of a plan leaves.
+def zones_of(plan: Plan, op: Operation) -> tuple[Zone, ...]:
+    """The zones that one operation of a plan leaves, with what others machine of them and what keeps the cutter away.
 
     Parameters
     ----------
     plan : Plan
     op : Operation
-        With a path, of a fixed axis or of layers around a blade.
-    progress : Progress
+        With a path, of a fixed axis, with the zones that were found with the proof of its passes, or of layers around a
+        blade.
 
     Raises
     ------
     Cancelled
         When the user asked to stop.
     """
-    assert op.path is not None and op.orientation.axis is not None
+    assert op.path is not None
     if strategy_of(plan.inputs.method).in_layers:
         return beyond_layers(op.face, op.path, op.orientation.feed)
-    zones = search_task(plan, op, progress).left_by(op.path)
-    if not zones:
+    if not op.zones:
         return ()
     height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
-    zones = _name_avoided(plan, op, zones)
+    zones = _name_avoided(plan, op, tuple(replace(zone, elsewhere=0.0) for zone in op.zones))
     others = [Excess(op.face, other.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
     return tuple(also_machined(op.face, zone, others) for zone in zones)
@@ -140,22 +140,21 @@ def _name_avoided(plan: Plan, op: Operation, zones: tuple[Zone, ...]) -> tuple[Z
     return tuple(found)
 
 
-def with_zones(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Operation:
+def with_zones(plan: Plan, op: Operation) -> Operation:
     """An operation of a plan with the zones that it leaves; see `zones_of` and `describe_zones`.
 
     Parameters
     ----------
     plan : Plan
     op : Operation
-        With a path.
-    progress : Progress
+        With a path, as for `zones_of`.
 
     Raises
     ------
     Cancelled
         When the user asked to stop.
     """
-    return describe_zones(op, zones_of(plan, op, progress))
+    return describe_zones(op, zones_of(plan, op))
 
 
 def describe_zones(op: Operation, zones: tuple[Zone, ...]) -> Operation:

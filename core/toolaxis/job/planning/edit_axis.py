@@ -117,7 +117,7 @@ def try_axis(plan: Plan, op: Operation, axis: ArrayLike, feed: str | None = None
     found = replace(found, map=op.orientation.map, lobes=op.orientation.lobes)
     if path is None:
         return Operation(op.number, op.face, op.tool, found)
-    return Operation(op.number, op.face, op.tool, found, path, frame_of(op.face, found, plan.datum), job.left_by(path))
+    return Operation(op.number, op.face, op.tool, found, path, frame_of(op.face, found, plan.datum), found.zones)
 
 
 def evaluate_given_axis(task: FaceProblem, axis: ArrayLike, feed: str | None = None) -> tuple[Orientation,

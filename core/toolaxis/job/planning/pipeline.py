@@ -26,6 +26,7 @@ from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.rack_blades import plan_blades_with_rack
 from toolaxis.job.planning.sub_surfaces import held_in, not_divided, read_division, smooth_pieces
 from toolaxis.job.planning.timing import add_times
+from toolaxis.job.planning.unplanned import add_hidden, add_not_begun
 from toolaxis.job.planning.unreachable import with_unreachable
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
 from toolaxis.machine.machine import Machine
@@ -33,6 +34,7 @@ from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.choices import FEEDRATE, ISO, SCALLOP, SPINDLE
+from toolaxis.plan.held_face import HeldFace
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -233,11 +235,17 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         whole_part = None if pattern is None else replace(pattern, part=loaded)
         jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
         made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
-        return replace(_order_operations(made, progress), held=in_clamping)
+        return _tell_apart(_order_operations(made, progress), free, in_clamping)
     untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
     whole = faces is None and untouched and method in METHODS
     made = _plan_part(job, free, (whole, compare), progress)
-    return replace(_order_operations(made, progress), held=in_clamping)
+    return _tell_apart(_order_operations(made, progress), free, in_clamping)
+
+
+def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:
+    """A plan that tells what of its faces is held in the clamping, hidden in a skin, or was not begun."""
+    with activate_progress(NO_PROGRESS):  # what is finished is told of, whoever wants to stop
+        return replace(add_hidden(add_not_begun(plan, faces), faces), held=held)
 
 
 def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,

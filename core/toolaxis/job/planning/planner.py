@@ -259,6 +259,8 @@ class PlanningJob:
         made, cancelled = self._operations_of(targets, progress)
         if not cancelled and self._may_divide:
             made, cancelled = self._divided_by_reach(targets, made, progress)
+        if cancelled:  # a sub-surface that waits for its division has not been tried
+            made = tuple(op for op in made if _IN_PIECES not in op.orientation.reasons)
         plan = self._plan(made, "cancelled" if cancelled else _outcome(made), options)
         return self._face_by_face(plan, progress) if not cancelled and self._may_divide else plan
 
@@ -504,7 +506,7 @@ class PlanningJob:
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         frame = None if path is None else frame_of(face, found, self.datum)
-        return Operation(number, face, self.tool, found, path, frame)
+        return Operation(number, face, self.tool, found, path, frame, found.zones)
 
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""

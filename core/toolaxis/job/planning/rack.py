@@ -18,7 +18,8 @@ from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
-from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, Plan
+from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, LEFT_OPEN, Plan
+from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import widths
@@ -41,8 +42,6 @@ WHOLE, MUCH = 0.8, 0.3
 APART_BELOW = 0.5
 #: Share of a face that is out of reach where no tool is asked for it.
 PROVEN = 0.99
-#: Share of the faces that may stay open in a plan that is complete.
-LEFT_OPEN = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +84,7 @@ class RackPlanner:
     _done: list[Operation] = field(default_factory=list)
     _left_by: dict[int, frozenset[int]] = field(default_factory=dict)
     _waiting: list[_Waiting] = field(default_factory=list)
+    _rests: list[UnplannedArea] = field(default_factory=list)
     _used: set[int] = field(default_factory=set)
     _steps: Counter[str] = field(default_factory=Counter)
 
@@ -113,6 +113,8 @@ class RackPlanner:
         except Cancelled:
             pass
         with activate_progress(NO_PROGRESS):  # what is finished is kept
+            self._rests += [_rest_not_begun(one, one.root.trimmed(one.loops).area) for one in self._waiting
+                            if one.left_by]
             return self._put_together("cancelled")
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
@@ -170,14 +172,38 @@ class RackPlanner:
         targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, in_pieces=one.in_pieces)
                    for label, one in now.items()]
         made = self.jobs[tool].plan_pieces(targets, progress)
-        if made.outcome == "cancelled":  # what is finished is kept; nothing goes to another tool any more
-            for op in made.operations:
-                self._left_by[len(self._done)] = _origin(op.face, now).left_by
-                self._done.append(op)
-            return False
+        stopped = made.outcome == "cancelled"
         for op in made.operations:
-            self._take_over(op, _origin(op.face, now), tool)
-        return True
+            origin = _origin(op.face, now)
+            try:
+                if not stopped:
+                    self._take_over(op, origin, tool)
+            except Cancelled:
+                stopped = True
+            if stopped:  # what is finished is kept; nothing goes to another tool any more
+                self._keep_last(op, origin, tool)
+        if stopped:
+            with activate_progress(NO_PROGRESS):  # areas are evaluated for it, whoever wants to stop
+                self._count_unfinished(now, made.operations)
+        return not stopped
+
+    def _keep_last(self, op: Operation, origin: _Waiting, tool: int) -> None:
+        """Keep an operation when the user has stopped the plan: no smaller tool is asked for what it leaves."""
+        self._left_by[len(self._done)] = origin.left_by
+        self._done.append(op)
+        area = sum(zone.area for zone in op.zones if zone.at_wall)
+        if op.done and area >= LEAST_AREA and tool < max(self._allowed):
+            self._rests.append(_rest_not_begun(origin, area))
+
+    def _count_unfinished(self, now: Mapping[str, _Waiting], finished: Sequence[Operation]) -> None:
+        """Tell how much of rests a tool was not done with when the user stopped it."""
+        for label, one in now.items():
+            if not one.left_by:  # that is seen from the faces themselves
+                continue
+            done = sum(op.face.area for op in finished if _origin(op.face, now) is one)
+            left = one.root.trimmed(one.loops, label).area - done
+            if left >= LEAST_AREA:
+                self._rests.append(_rest_not_begun(one, left))
 
     def _name(self, one: _Waiting) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
@@ -259,7 +285,7 @@ class RackPlanner:
         if not outcome:
             outcome = outcome_of_rack(numbered)
         return replace(self.jobs[0].empty(), tools=tuple(job.tool for job in self.jobs), operations=numbered,
-                       outcome=outcome)
+                       outcome=outcome, unplanned=tuple(self._rests))
 
     def _machined_of_rest(self) -> dict[int, float]:
         """By operation the area that others machine of what it left, mm^2."""
@@ -291,6 +317,11 @@ def outcome_of_rack(operations: Sequence[Operation]) -> str:
     account = PartAccount.of(operations)
     lost = any(op.failed for op in operations) or not account.machined
     return "incomplete" if lost or account.open > LEFT_OPEN * account.area else "complete"
+
+
+def _rest_not_begun(one: _Waiting, area: float) -> UnplannedArea:
+    """Area that larger tools leave of a sub-surface, mm^2, and for which no smaller one was asked before the stop."""
+    return UnplannedArea(one.root.number, one.root.label, area, False, REST)
 
 
 def _in_pieces(chain: ToolChain) -> bool:

@@ -20,6 +20,7 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.plan.baseline import clock
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Plan, outcome_of
+from toolaxis.report.areas_aside import describe_open
 from toolaxis.report.figures.splat_renderer import mean_direction
 from toolaxis.report.html import charts
 from toolaxis.report.html.charts import PageFigure
@@ -35,6 +36,7 @@ from toolaxis.report.html.page_tables import (
 )
 from toolaxis.report.html.scene_3d import scene
 from toolaxis.report.tables import baselines_table, number, open_table, options_table, plan_table, reckoning
+from toolaxis.report.verdict_words import PASSED, count_passed, name_verdict
 from toolaxis.report.warnings import warnings_of
 from toolaxis.verify.axis_view import RestMaterialView, coarser
 
@@ -109,7 +111,7 @@ def page(plan: Plan, beside: PlanFiles, name: str) -> str:
     chooser = [{"name": name, "said": _said(plan, name), "charts": list(found)} for name, found in own.items() if found]
     warnings = warnings_of(plan, beside.verdict)
     context = {
-        "name": name, "plan": plan, "version": __version__, "verdict": _verdict_word(beside.verdict),
+        "name": name, "plan": plan, "version": __version__, "verdict": _verdict_line(plan, beside.verdict),
         "warnings": warnings, "told": json.dumps([[one.level, one.text] for one in warnings]),
         "figures": _figures(plan),
         "tables": _tables(plan, beside, (done, seconds)), "chooser": chooser, "data": data,
@@ -226,12 +228,11 @@ def _times(plan: Plan) -> list[dict[str, float]]:
     return found
 
 
-def _verdict_word(verdict: Mapping[str, Any] | None) -> str:
-    if verdict is None:
-        return "not judged"
-    if verdict.get("unjudged") and all(op["passed"] for op in verdict["operations"]):
-        return "not judged to the end"
-    return "passed" if verdict["passed"] else "FAILED"
+def _verdict_line(plan: Plan, verdict: Mapping[str, Any] | None) -> dict[str, str]:
+    """What the page says first: the judge on what was made, what came of the plan, and what stays open."""
+    word = name_verdict(verdict)
+    level = "bad" if word != PASSED else "good" if plan.outcome == "complete" else "part"
+    return {"level": level, "word": word, "count": count_passed(verdict), "open": describe_open(plan)}
 
 
 def _figures(plan: Plan) -> list[tuple[str, str]]:
