@@ -26,6 +26,12 @@ _ROUGH = 0.005
 _FAR = 50.0
 #: Share of the motions up to which those that break a limit are worth being left out.
 FEW = 0.02
+#: A path of more motions than the first number is refused where, of about as many as the second number spread over it,
+#: so many times as many break a limit as may be left out: to judge all of them would take long.
+_LONG, _SPREAD, _SURELY = 30_000, 4_000, 2.0
+#: So many motions that follow each other are held together against what stands around, before each is by itself; how
+#: long a motion of them may be, in radii of the tool.
+_TOGETHER, _EACH = (32, 8), 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,11 +85,18 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    refused = _refuse_early(tool, groups, moves)
+    if refused is not None:
+        return PathCheck(refused)
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
+    nearest: dict[int, float] = {}
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        rows = _find_blocked(tool, group, moves, group.required)
+        if group.role == OTHER:
+            rows = _find_blocked(tool, group, moves, group.required)
+        else:
+            rows, nearest[number] = _measure_and_find(tool, group, moves, allowance if group.role == SKIN else 0.0)
         into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
         if not len(rows) and not len(into):
             continue
@@ -102,12 +115,24 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
     for number, group in enumerate(groups):
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role != OTHER:
-            gouge = max(gouge, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
+            gouge = max(gouge, _depth(tool, group, nearest[number], allowance if group.role == SKIN else 0.0))
         asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
             clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
     return PathCheck(None, gouge, clearance)
+
+
+def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
+    """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
+    if len(moves) <= _LONG:
+        return None
+    some = moves[::len(moves) // _SPREAD]
+    for group in groups:
+        rows = _find_blocked(tool, group, some, group.required)
+        if len(rows) > _SURELY * FEW * len(some):
+            return worst_motion(tool, group, some[rows], group.required, group.required)
+    return None
 
 
 def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: float) -> float:
@@ -122,8 +147,33 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     allowance : float
         Stock left on the group, mm.
     """
-    nearest = lower_bounds(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0].min()
+    return _depth(tool, group, float(_cutter_distances(tool, group, moves, allowance).min()), allowance)
+
+
+def _depth(tool: Tool, group: CheckSurfaces, nearest: float, allowance: float) -> float:
+    """The depth that follows from the least lower bound of the cutter's distances, mm."""
     return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
+
+
+def _cutter_distances(tool: Tool, group: CheckSurfaces, moves: Array, allowance: float) -> Array:
+    """Lower bounds of the cutter's distances from a group, (n,) mm, as exact as depths are told."""
+    return lower_bounds(group.cells, tool, moves, allowance + 2 * FINE, FINE, _only(group, (0,))).lower[:, 0]
+
+
+def _measure_and_find(tool: Tool, group: CheckSurfaces, moves: Array,
+                      allowance: float) -> tuple[NDArray[np.intp], float]:
+    """The motions that are not proven to keep their distances from a skin, and the least bound of the cutter's.
+
+    The cutter's distances are told in the end: where they suffice, it need not be decided besides whether they do.
+    """
+    distances = _cutter_distances(tool, group, moves, allowance)
+    doubtful = np.flatnonzero(distances < group.required[0])
+    others = group.required.copy()
+    others[0] = -np.inf
+    blocked = np.zeros(len(moves), dtype=bool)
+    blocked[_find_blocked(tool, group, moves, others)] = True
+    blocked[doubtful[_find_blocked(tool, group, moves[doubtful], group.required)]] = True
+    return np.flatnonzero(blocked), float(distances.min())
 
 
 def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
@@ -135,8 +185,31 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
 
 def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
     """The motions that are not proven to keep distances (3,) from a group."""
-    found = keeps_limits(group.cells, tool, moves, np.tile(required, (len(group.faces), 1)))
-    return np.flatnonzero(found.blocked >= 0)
+    table, left = np.tile(required, (len(group.faces), 1)), np.arange(len(moves))
+    if group.role == OTHER or np.isneginf(required[0]):  # on its skin a cutter is too near to be told about so
+        for count in _TOGETHER:
+            left = left[~_keep_together(tool, group, moves[left], table, count)]
+    found = keeps_limits(group.cells, tool, moves[left], table)
+    return left[found.blocked >= 0]
+
+
+def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, count: int) -> NDArray[np.bool_]:
+    """Motions (n,) of which so many that follow each other keep distances (faces, 3), as a ball around them tells.
+
+    A distance changes by no more than the tip moves.
+    """
+    first = np.arange(0, len(moves), count)
+    if len(first) < 2:
+        return np.zeros(len(moves), dtype=bool)
+    reach = np.abs(moves[:, 1])
+    low = np.minimum.reduceat(moves[:, 0] - reach, first)
+    high = np.maximum.reduceat(moves[:, 0] + reach, first)
+    radius = np.linalg.norm(high - low, axis=1) / 2
+    short = radius <= count * _EACH * tool.radius  # links are long
+    balls = np.stack([(low + high) / 2, np.zeros_like(low), moves[first, 2]], axis=1)[short]
+    kept = np.zeros(len(first), dtype=bool)
+    kept[short] = keeps_limits(group.cells, tool, balls, table + radius[short].max(initial=0.0)).blocked < 0
+    return np.repeat(kept, np.diff(np.append(first, len(moves))))
 
 
 def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation:
