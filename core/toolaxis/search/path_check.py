@@ -15,6 +15,7 @@ from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
 from toolaxis.tools.tool import Tool
+from toolaxis.work import allow
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,8 @@ FEW = 0.02
 #: A path of more motions than the first number is refused where, of about as many as the second number spread over it,
 #: so many times as many break a limit as may be left out: to judge all of them would take long.
 _LONG, _SPREAD, _SURELY = 30_000, 4_000, 2.0
+#: So many bounds are allowed to each motion of a long path besides the limit.
+_ALLOWED = 1500
 #: So many motions that follow each other are held together against what stands around, before each is by itself; how
 #: long a motion of them may be, in radii of the tool.
 _TOGETHER, _EACH = (32, 8), 0.25
@@ -85,9 +88,11 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
-    refused = _refuse_early(tool, groups, moves)
-    if refused is not None:
-        return PathCheck(refused)
+    if len(moves) > _LONG:
+        refused = _refuse_early(tool, groups, moves)
+        if refused is not None:
+            return PathCheck(refused)
+        allow(_ALLOWED * len(moves))
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     nearest: dict[int, float] = {}
@@ -125,8 +130,6 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
 
 def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
     """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
-    if len(moves) <= _LONG:
-        return None
     some = moves[::len(moves) // _SPREAD]
     for group in groups:
         rows = _find_blocked(tool, group, some, group.required)
@@ -164,16 +167,19 @@ def _measure_and_find(tool: Tool, group: CheckSurfaces, moves: Array,
                       allowance: float) -> tuple[NDArray[np.intp], float]:
     """The motions that are not proven to keep their distances from a skin, and the least bound of the cutter's.
 
-    The cutter's distances are told in the end: where they suffice, it need not be decided besides whether they do.
+    The cutter's distances are told in the end: where they suffice, it need not be decided besides whether they do.  Of
+    a long path it is only decided, which takes a third of the time: it goes no deeper than it may.
     """
-    distances = _cutter_distances(tool, group, moves, allowance)
-    doubtful = np.flatnonzero(distances < group.required[0])
-    others = group.required.copy()
-    others[0] = -np.inf
+    others, cutter = group.required.copy(), group.required.copy()
+    others[0], cutter[1:] = -np.inf, -np.inf
+    doubtful, nearest = np.arange(len(moves)), float(cutter[0])
+    if len(moves) <= _LONG:
+        distances = _cutter_distances(tool, group, moves, allowance)
+        doubtful, nearest = np.flatnonzero(distances < cutter[0]), float(distances.min())
     blocked = np.zeros(len(moves), dtype=bool)
     blocked[_find_blocked(tool, group, moves, others)] = True
-    blocked[doubtful[_find_blocked(tool, group, moves[doubtful], group.required)]] = True
-    return np.flatnonzero(blocked), float(distances.min())
+    blocked[doubtful[_find_blocked(tool, group, moves[doubtful], cutter)]] = True
+    return np.flatnonzero(blocked), nearest
 
 
 def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
@@ -272,6 +278,14 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
     if not components:
         return {}
     asked, best = _only(group, components), np.full(3, most + _ROUGH)
+    if len(moves) > _LONG:
+        spread = _least(tool, group, moves[::len(moves) // _SPREAD], components, most)
+        table = asked + np.array([spread.get(c, 0.0) for c in range(3)])
+        for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
+            moves = moves[~_keep_together(tool, group, moves, table, count)]
+        best = np.array([spread.get(c, most) for c in range(3)]) + _ROUGH
+    if not len(moves):
+        return {c: float(best[c]) - _ROUGH for c in components}
     order = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
     for first in range(0, len(order), _BATCH):
         least = lower_bounds(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH,

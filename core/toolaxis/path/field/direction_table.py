@@ -275,7 +275,9 @@ def _tip_ways(face: Face, cut: Cut, uv: Array, angles: Array) -> Array:
     along = rates[0] / metric[:, :1]
     across = (rates[1] - metric[:, 1:2] * along) / metric[:, 2:]
     way = np.cos(angles)[:, None] * across[:, None] - np.sin(angles)[:, None] * along[:, None]
-    return np.asarray(np.maximum(np.linalg.norm(way, axis=2), _NARROWEST))
+    long = np.linalg.norm(way, axis=2)
+    # On a ripple much smaller than the cutter its tip goes a thousand times as far in one direction as in another.
+    return np.asarray(np.maximum(long, _NARROWEST * np.maximum(long.max(axis=1, keepdims=True), 1.0)))
 
 
 def _degree_two(angles: Array) -> Array:
