@@ -48,6 +48,15 @@ class Budget:
         self._stop += self._kept_back
         self._kept_back = 0.0
 
+    def allow(self, bounds: float) -> None:
+        """Allow further work: what was found is proven to the end, however long it is.
+
+        Parameters
+        ----------
+        bounds : float
+        """
+        self._stop += bounds / UNIT
+
     def spend(self, bounds: float) -> None:
         """Count work that was done.
 
@@ -138,6 +147,18 @@ def allow_proof() -> None:
     budget = _SPENT.get()
     if budget is not None:
         budget.allow_proof()
+
+
+def allow(bounds: float) -> None:
+    """Allow further work, where somebody limits it.
+
+    Parameters
+    ----------
+    bounds : float
+    """
+    budget = _SPENT.get()
+    if budget is not None:
+        budget.allow(bounds)
 
 
 @contextmanager

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.placement import tips
+from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.parametrization import Chart, Cut, tip_points
 
@@ -13,6 +14,8 @@ Index = NDArray[np.intp]
 _FIRST_GAPS = 4
 _ROUNDS = 12
 _PROBES = np.array([0.25, 0.5, 0.75])
+#: Gaps, or motions, that are looked at together.
+_GAPS = 20_000
 
 
 def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, Array]:
@@ -42,7 +45,8 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     for _ in range(_ROUNDS):
         if not len(owner):
             break
-        parts = np.ceil(1.05 * np.sqrt(_deviations(chart, cut, low, high, pieces[owner, 2]) / chord))
+        away = in_blocks(lambda *gaps: _deviations(chart, cut, *gaps), low, high, pieces[owner, 2], size=_GAPS)
+        parts = np.ceil(1.05 * np.sqrt(away / chord))
         fine = parts <= 1.05
         done_owner.append(owner[fine])
         done_low.append(low[fine])
@@ -77,19 +81,26 @@ def rises(chart: Chart, cut: Cut, steps: Array, piece: Index, along: Array) -> A
     first = np.flatnonzero(piece[1:] == piece[:-1])
     if not len(first):
         return deeper
+    above = in_blocks(lambda *gaps: _heights_over(chart, cut, *gaps), along[first], along[first + 1], steps[first],
+                      size=_GAPS)
+    for end in (first, first + 1):
+        np.maximum.at(deeper, end, above)
+    return deeper
+
+
+def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
+    """How far straight motions from low to high stay above the pass at most, (m,) mm."""
     places = np.concatenate([[0.0], _PROBES, [1.0]])
-    rows = along[first, None] + (along[first + 1] - along[first])[:, None] * places
-    contact, tip, normal = tip_points(chart, cut, rows.ravel(), np.repeat(steps[first], len(places)))
-    axes = cut.axes(chart.face, chart.uv(rows.ravel(), np.repeat(steps[first], len(places))))
-    shape = (*rows.shape, 3)
+    along = (low[:, None] + (high - low)[:, None] * places).ravel()
+    steps = np.repeat(step, len(places))
+    contact, tip, normal = tip_points(chart, cut, along, steps)
+    axes = cut.axes(chart.face, chart.uv(along, steps))
+    shape = (len(low), len(places), 3)
     axes = np.broadcast_to(axes, contact.shape).reshape(shape)
     point, up = (part.reshape(shape)[:, 1:-1].reshape(-1, 3) for part in (contact, normal))
     between, leaning = (_between(part.reshape(shape)).reshape(-1, 3) for part in (tip, axes))
     touching = tips(point, up, unit(leaning), cut.tool, cut.allowance)
-    above = ((between - touching) * up).sum(axis=1).reshape(len(first), -1).max(axis=1)
-    for end in (first, first + 1):
-        np.maximum.at(deeper, end, above)
-    return deeper
+    return np.asarray(((between - touching) * up).sum(axis=1).reshape(len(low), -1).max(axis=1))
 
 
 def _between(rows: Array) -> Array:

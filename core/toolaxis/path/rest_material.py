@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.strip.swept_volume import distance_to_removed
+from toolaxis.contact.strip.swept_volume import sweep_motions
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_polygon, without
@@ -77,8 +78,8 @@ class Excess:
 
     def __init__(self, face: Face, tool: Tool, path: ToolPath, height: float,
                  motions: tuple[Array, Array] | None = None) -> None:
-        self._face, self._tool, self._axis, self._height = face, tool, path.axis[0], height
-        self._motions = motions_of(path) if motions is None else motions
+        self._face, self._tool, self._height = face, tool, height
+        self._swept = sweep_motions(path.axis[0], *(motions_of(path) if motions is None else motions))
 
     def __call__(self, uv: Array) -> Array:
         """Numbers (n,) at parameters (n, 2), beyond the face too: above zero where more than that height is left.
@@ -100,14 +101,19 @@ class Excess:
         """
         at, ends = self._raise_points(middle), self._raise_points(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
         reach = _BULGE * np.linalg.norm(ends - at[:, None], axis=2).max(axis=1)
-        return np.asarray(self._distance(at, float(reach.max(initial=0.0))) >= reach)
+        left = self._distance(at, _FAR) > 0  # most middles are cut: how far others are takes long to tell
+        left[left] = self._distance(at[left], float(reach[left].max(initial=0.0))) >= reach[left]
+        return left
 
     def _raise_points(self, uv: Array) -> Array:
+        return in_blocks(self._raise_some, uv)
+
+    def _raise_some(self, uv: Array) -> Array:
         d = self._face.evaluate(uv)
         return np.asarray(d.point + self._height * self._face.normal(uv, d))
 
     def _distance(self, points: Array, most: float) -> Array:
-        return distance_to_removed(self._tool, self._axis, *self._motions, points, most, 0.0)
+        return self._swept.distance(self._tool, points, most, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

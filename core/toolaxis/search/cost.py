@@ -113,7 +113,7 @@ class MachiningCost:
         axis : (3,) array
         """
         try:
-            return tabulate_directions(self.face, self.cut(axis), _IDEAL).ideal_length
+            return tabulate_directions(self.face, self.cut(axis), _IDEAL, only_inside=True).ideal_length
         except (OutOfWork, UnsupportedGeometry):
             return 0.0
 

@@ -59,7 +59,7 @@ from toolaxis.search.messages import (
     tally,
     why_none,
 )
-from toolaxis.search.path_check import PathCheck, prove
+from toolaxis.search.path_check import PathCheck, ProvenMotions, prove
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
 from toolaxis.search.time_estimate import pace_of
@@ -603,10 +603,11 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
-    job, placed, plain, proof = _proven_without_refused(job, placed)
+    known = ProvenMotions()
+    job, placed, plain, proof = _proven_without_refused(job, placed, known)
     made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
     if made.placed is not placed:
-        of_all = _proven(job, made.path)
+        of_all = _proven(job, made.path, known)
         if of_all.witness is None:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
@@ -653,10 +654,11 @@ def _scattered_places(face: Face, count: int) -> Array:
     return np.asarray(uv[face.contains(uv)])
 
 
-def _proven_without_refused(job: FaceProblem, placed: Layout) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
+def _proven_without_refused(job: FaceProblem, placed: Layout,
+                            known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
     """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
     path = job.traced(placed)
-    proof = _proven(job, path)
+    proof = _proven(job, path, known)
     for _ in range(_LEFT_OUT):
         if not len(proof.blocked):
             break
@@ -665,16 +667,16 @@ def _proven_without_refused(job: FaceProblem, placed: Layout) -> tuple[FaceProbl
             break
         job, placed = job.without(ends), fewer
         path = job.traced(placed)
-        proof = _proven(job, path)
+        proof = _proven(job, path, known)
     return job, placed, path, proof
 
 
-def _proven(job: FaceProblem, path: ToolPath) -> PathCheck:
+def _proven(job: FaceProblem, path: ToolPath, known: ProvenMotions) -> PathCheck:
     """The proof of a path, after a look at whether its machine reaches all of it."""
     beyond = machine_violation(job.feasibility, path, job.groups)
     if beyond:
         return PathCheck(beyond)
-    return prove(path, job.worth.tool, job.groups, job.worth.allowance, progress=job.progress)
+    return prove(path, job.worth.tool, job.groups, job.worth.allowance, known=known, progress=job.progress)
 
 
 def _other(job: FaceProblem, one: CountedAxis) -> Orientation:

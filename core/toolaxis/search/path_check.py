@@ -1,5 +1,6 @@
 """The last word on an axis: every motion of the passes really made, judged by bounds that hold along it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,6 +16,7 @@ from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
 from toolaxis.tools.tool import Tool
+from toolaxis.work import allow
 
 Array = NDArray[np.float64]
 
@@ -28,6 +30,14 @@ _ROUGH = 0.005
 _FAR = 50.0
 #: Share of the motions up to which those that break a limit are worth being left out.
 FEW = 0.02
+#: A path of more motions than the first number is refused where, of about as many as the second number spread over it,
+#: so many times as many break a limit as may be left out: to judge all of them would take long.
+_LONG, _SPREAD, _SURELY = 30_000, 4_000, 2.0
+#: So many bounds are allowed to each motion of a long path besides the limit.
+_ALLOWED = 1500
+#: So many motions that follow each other are held together against what stands around, before each is by itself; how
+#: long a motion of them may be, in radii of the tool.
+_TOGETHER, _EACH = (32, 8), 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +62,65 @@ class PathCheck:
     blocked: NDArray[np.intp] = field(default_factory=lambda: np.empty(0, dtype=np.intp))
 
 
+@dataclass(eq=False)
+class ProvenMotions:
+    """What earlier looks at passes with the same axis, tool and surroundings have proven.
+
+    Attributes
+    ----------
+    kept : dict of int to set of bytes
+        By number of the group the motions that keep its limits.
+    measured : set of bytes
+        Motions that the figures of `figures` hold for.
+    figures : PathCheck
+    """
+
+    kept: dict[int, set[bytes]] = field(default_factory=dict)
+    measured: set[bytes] = field(default_factory=set)
+    figures: PathCheck = field(default_factory=lambda: PathCheck(None))
+
+    def find_blocked(self, number: int, names: list[bytes], ask: Callable[[NDArray[np.intp]], NDArray[np.intp]],
+                     ) -> NDArray[np.intp]:
+        """The motions that are not proven to keep the limits of a group; it is asked only for those not known yet.
+
+        Parameters
+        ----------
+        number : int
+            Of the group.
+        names : list of bytes
+            Of all motions.
+        ask : callable
+            Takes rows (k,) of motions, and gives back which of the k are not proven.
+        """
+        known = self.kept.setdefault(number, set())
+        new = np.array([k for k, name in enumerate(names) if name not in known], dtype=np.intp)
+        if not len(new):
+            return new
+        blocked = new[ask(new)]
+        known.update(names[k] for k in np.setdiff1d(new, blocked))
+        return blocked
+
+    def measure(self, names: list[bytes], ask: Callable[[NDArray[np.intp]], PathCheck]) -> PathCheck:
+        """The figures of a path; they are asked only for motions that were not measured yet.
+
+        Parameters
+        ----------
+        names : list of bytes
+            Of all motions.
+        ask : callable
+            Takes rows (k,) of motions, and gives back their figures.
+        """
+        new = np.array([k for k, name in enumerate(names) if name not in self.measured], dtype=np.intp)
+        if len(new):
+            mine, before = ask(new), self.figures
+            clearance = {name: min(value, before.clearance.get(name, value)) for name, value in mine.clearance.items()}
+            self.figures = PathCheck(None, max(mine.gouge, before.gouge), clearance)
+            self.measured.update(names[k] for k in new)
+        return self.figures
+
+
 def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *, most: float = 20.0,
-          progress: Progress = NO_PROGRESS) -> PathCheck:
+          known: ProvenMotions | None = None, progress: Progress = NO_PROGRESS) -> PathCheck:
     """Judge every motion of a path with one fixed axis.
 
     Measuring ends with what is known where a motion needs too many cells, and may then fall short of what deciding has
@@ -69,6 +136,8 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         Stock left on the skin, mm.
     most : float
         Clearances beyond this are not told apart, mm.
+    known : ProvenMotions, optional
+        Of earlier looks with the same axis, tool and groups; receives what this one proves.
     progress : Progress
 
     Returns
@@ -81,11 +150,19 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    if len(moves) > _LONG:
+        refused = _refuse_early(tool, groups, moves)
+        if refused is not None:
+            return PathCheck(refused)
+        allow(_ALLOWED * len(moves))
+    known = known or ProvenMotions()
+    names = [row.tobytes() for row in moves[:, :2]]
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        rows = _find_blocked(tool, group, moves, group.required)
+        rows = known.find_blocked(number, names,
+                                  lambda some: _find_blocked(tool, group, moves[some], group.required))  # noqa: B023
         into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
         if not len(rows) and not len(into):
             continue
@@ -98,18 +175,34 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
             return PathCheck(witness)
     if witness is not None:
         return PathCheck(witness, blocked=np.flatnonzero(blocked))
+    return known.measure(names, lambda some: _measure(tool, groups, moves[some], allowance, most, progress))
+
+
+def _measure(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array, allowance: float, most: float,
+             progress: Progress) -> PathCheck:
+    """The figures of motions that keep all limits."""
     gouge = 0.0
     clearance: dict[str, float] = {}
-    known = {"cutter", *tool.outlines}
+    has = {"cutter", *tool.outlines}
     for number, group in enumerate(groups):
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role != OTHER:
             gouge = max(gouge, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
-        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
+        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in has and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
             clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
     return PathCheck(None, gouge, clearance)
+
+
+def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
+    """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
+    some = moves[::len(moves) // _SPREAD]
+    for group in groups:
+        rows = _find_blocked(tool, group, some, group.required)
+        if len(rows) > _SURELY * FEW * len(some):
+            return worst_motion(tool, group, some[rows], group.required, group.required)
+    return None
 
 
 def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: float) -> float:
@@ -139,8 +232,31 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
 
 def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
     """The motions that are not proven to keep distances (3,) from a group."""
-    found = keeps_limits(group.cells, tool, moves, np.tile(required, (len(group.faces), 1)))
-    return np.flatnonzero(found.blocked >= 0)
+    table, left = np.tile(required, (len(group.faces), 1)), np.arange(len(moves))
+    if group.role == OTHER or np.isneginf(required[0]):  # on its skin a cutter is too near to be told about so
+        for count in _TOGETHER:
+            left = left[~_keep_together(tool, group, moves[left], table, count)]
+    found = keeps_limits(group.cells, tool, moves[left], table)
+    return left[found.blocked >= 0]
+
+
+def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, count: int) -> NDArray[np.bool_]:
+    """Motions (n,) of which so many that follow each other keep distances (faces, 3), as a ball around them tells.
+
+    A distance changes by no more than the tip moves.
+    """
+    first = np.arange(0, len(moves), count)
+    if len(first) < 2:
+        return np.zeros(len(moves), dtype=bool)
+    reach = np.abs(moves[:, 1])
+    low = np.minimum.reduceat(moves[:, 0] - reach, first)
+    high = np.maximum.reduceat(moves[:, 0] + reach, first)
+    radius = np.linalg.norm(high - low, axis=1) / 2
+    short = radius <= count * _EACH * tool.radius  # links are long
+    balls = np.stack([(low + high) / 2, np.zeros_like(low), moves[first, 2]], axis=1)[short]
+    kept = np.zeros(len(first), dtype=bool)
+    kept[short] = keeps_limits(group.cells, tool, balls, table + radius[short].max(initial=0.0)).blocked < 0
+    return np.repeat(kept, np.diff(np.append(first, len(moves))))
 
 
 def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation:
@@ -202,18 +318,25 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
     """Least distance of components to a group over all motions, at most `_ROUGH` too small; `most` where it is more."""
     if not components:
         return {}
-    lowest_first = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
-    found = _bound_least(tool, group, moves[lowest_first], components, most + _ROUGH, _ROUGH)
+    best = np.full(3, most + _ROUGH)
+    if len(moves) > _LONG:
+        spread = _least(tool, group, moves[::len(moves) // _SPREAD], components, most)
+        table = _only(group, components) + np.array([spread.get(c, 0.0) for c in range(3)])
+        for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
+            moves = moves[~_keep_together(tool, group, moves, table, count)]
+        best = np.array([spread.get(c, most) for c in range(3)]) + _ROUGH
+    lowest_first = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable") if len(moves) else []
+    found = _bound_least(tool, group, moves[lowest_first], components, best, _ROUGH)
     return {c: float(found[c]) for c in components}
 
 
-def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float,
+def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,
                  resolution: float) -> Array:
     """Lower bounds (3,) of the least distance of components to a group over all motions, up to `most`.
 
     Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.
     """
-    asked, best = _only(group, components), np.full(3, most)
+    asked, best = _only(group, components), np.broadcast_to(np.asarray(most, dtype=float), 3)
     for first in range(0, len(moves), _BATCH):
         least = lower_bounds(group.cells, tool, moves[first:first + _BATCH], best, resolution, asked).lower.min(axis=0)
         best = np.where(least < best - resolution, least, best)

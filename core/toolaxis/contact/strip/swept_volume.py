@@ -1,5 +1,7 @@
 """What a cutter removes along a path: signed distance of points to everything that it sweeps."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -17,8 +19,10 @@ Array = NDArray[np.float64]
 RESOLUTION = 1e-6
 _HALVINGS = 60
 _ROWS = 64
-#: Motions, and points, that follow each other are looked at together.
-_GROUP, _TOGETHER = 16, 24
+#: Motions, groups of these, and points that follow each other are looked at together.
+_GROUP, _GROUPS, _TOGETHER = 16, 16, 24
+#: What rounding may take off the distance to a group of groups, mm.
+_ROUNDING = 1e-9
 
 
 @jit
@@ -55,32 +59,37 @@ def _least_of(cutter: CutterParameters, move: Array, point: Array, best: float) 
 
 
 @jit
-def _near(cutter: CutterParameters, balls: Array, moves: Array, ball: Array, most: float,
+def _near(cutter: CutterParameters, wide: Array, balls: Array, moves: Array, ball: Array, most: float,
           groups: NDArray[np.int64], near: NDArray[np.int64]) -> int:
     """Motions that may come nearer than a distance to a point of a ball, by group; the number of groups with any.
 
-    Row k of `groups` is a group, and where its motions end in `near`.
+    Row k of `groups` is a group, and where its motions end in `near`.  Of a long path most is far away: that is told
+    from groups of groups.
     """
     up, some, count = (0.0, 0.0, 1.0), 0, 0
-    for g in range(balls.shape[0]):
-        x, y, z = ball[0] - balls[g, 0], ball[1] - balls[g, 1], ball[2] - balls[g, 2]
-        if signed_distance(cutter, up, (x, y, z)) - balls[g, 3] - ball[3] >= most:
+    for w in range(wide.shape[0]):
+        x, y, z = ball[0] - wide[w, 0], ball[1] - wide[w, 1], ball[2] - wide[w, 2]
+        if signed_distance(cutter, up, (x, y, z)) - wide[w, 3] - ball[3] >= most + _ROUNDING:
             continue
-        before = count
-        for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
-            x, y, z = ball[0] - moves[k, 0], ball[1] - moves[k, 1], ball[2] - moves[k, 2]
-            if signed_distance(cutter, up, (x, y, z)) - moves[k, 6] - ball[3] < most:
-                near[count] = k
-                count += 1
-        if count > before:
-            groups[some, 0], groups[some, 1] = g, count
-            some += 1
+        for g in range(_GROUPS * w, min(_GROUPS * (w + 1), balls.shape[0])):
+            x, y, z = ball[0] - balls[g, 0], ball[1] - balls[g, 1], ball[2] - balls[g, 2]
+            if signed_distance(cutter, up, (x, y, z)) - balls[g, 3] - ball[3] >= most:
+                continue
+            before = count
+            for k in range(_GROUP * g, min(_GROUP * (g + 1), moves.shape[0])):
+                x, y, z = ball[0] - moves[k, 0], ball[1] - moves[k, 1], ball[2] - moves[k, 2]
+                if signed_distance(cutter, up, (x, y, z)) - moves[k, 6] - ball[3] < most:
+                    near[count] = k
+                    count += 1
+            if count > before:
+                groups[some, 0], groups[some, 1] = g, count
+                some += 1
     return some
 
 
 @jit
-def _least(cutter: CutterParameters, balls: Array, moves: Array, points: Array, told: tuple[float, float],
-           out: Array) -> None:
+def _least(cutter: CutterParameters, wide: Array, balls: Array, moves: Array, points: Array,
+           told: tuple[float, float], out: Array) -> None:
     """Points and moves (middle, half way, half length) in the frame whose z is the axis.
 
     Points that follow each other are looked at together, and first at the motion that was the nearest for the last one.
@@ -92,7 +101,7 @@ def _least(cutter: CutterParameters, balls: Array, moves: Array, points: Array, 
     for start in range(0, points.shape[0], _TOGETHER):
         end = min(start + _TOGETHER, points.shape[0])
         _around(points, start, end, ball)
-        some = _near(cutter, balls, moves, ball, told[1], groups, near)
+        some = _near(cutter, wide, balls, moves, ball, told[1], groups, near)
         for i in range(start, end):
             best = told[1]
             if some > 0:
@@ -187,27 +196,77 @@ def distance_to_removed(tool: Tool, axis: ArrayLike, starts: ArrayLike, ends: Ar
 
     **Properties**: 1. it never rises with more motions; 2. it turns with tool and points.
     """
-    a, b, p = (as_rows(rows, 3, name) for rows, name in ((starts, "starts"), (ends, "ends"), (points, "points")))
+    return sweep_motions(axis, starts, ends).distance(tool, points, most, least)
+
+
+class SweptMotions(NamedTuple):
+    """Straight motions of a tip with one axis, made ready to be asked for distances many times; from `sweep_motions`.
+
+    axis : (3,) array;  starts, ends : (m, 3) arrays, tips, mm
+    frame : (3, 3) array, columns of the frame whose z is the axis
+    moves : (m, 7) array, in that frame the middle, half of the way, and half the length, mm
+    balls, wide : (g, 4) arrays, around groups of motions, and around groups of these: see `_balls`
+    """
+
+    axis: Array
+    starts: Array
+    ends: Array
+    frame: Array
+    moves: Array
+    balls: Array
+    wide: Array
+
+    def distance(self, tool: Tool, points: ArrayLike, most: float = np.inf, least: float = -np.inf) -> Array:
+        """Signed distance of points to the union of a cutter's positions, (n,) mm, see `distance_to_removed`.
+
+        Parameters
+        ----------
+        tool, points, most, least
+            As for `distance_to_removed`.
+        """
+        p = as_rows(points, 3, "points")
+        if not _compiled.available:
+            return distance_to_removed_numpy(tool, self.axis, self.starts, self.ends, p, most)
+        out = np.empty(len(p))
+        _least(parameters_of_tool(tool), self.wide, self.balls, self.moves, np.ascontiguousarray(p @ self.frame),
+               (float(least), float(most)), out)
+        return out
+
+
+def sweep_motions(axis: ArrayLike, starts: ArrayLike, ends: ArrayLike) -> SweptMotions:
+    """Motions made ready to be asked for distances.
+
+    Parameters
+    ----------
+    axis, starts, ends
+        As for `distance_to_removed`.
+    """
+    a, b = (as_rows(rows, 3, name) for rows, name in ((starts, "starts"), (ends, "ends")))
     t = unit(as_rows(axis, 3, "axis")[0])
-    if not _compiled.available:
-        return distance_to_removed_numpy(tool, t, a, b, p, most)
     sideways = unit(np.cross(t, np.eye(3)[int(np.argmin(np.abs(t)))]))
     frame = np.array([sideways, np.cross(t, sideways), t]).T
     half = (b - a) / 2
     moves = np.ascontiguousarray(np.column_stack([(a + b) / 2 @ frame, half @ frame, np.linalg.norm(half, axis=1)]))
-    out = np.empty(len(p))
-    _least(parameters_of_tool(tool), _balls(moves), moves, np.ascontiguousarray(p @ frame),
-           (float(least), float(most)), out)
-    return out
+    balls = _balls(moves[:, :3], moves[:, 6], _GROUP)
+    return SweptMotions(t, a, b, frame, moves, balls, _balls(balls[:, :3], balls[:, 3], _GROUPS))
 
 
-def _balls(moves: Array) -> Array:
-    """Centres of groups of motions, and how far any place on them is from there, (g, 4)."""
-    first = np.arange(0, len(moves), _GROUP)
-    owner = np.arange(len(moves)) // _GROUP
-    count = np.diff(np.append(first, len(moves)))
+def _balls(centres: Array, reach: Array, size: int) -> Array:
+    """Centres of groups of balls that follow each other, and how far any place in these is from there, (g, 4).
+
+    Parameters
+    ----------
+    centres : (n, 3) array
+    reach : (n,) array
+        Radii.
+    size : int
+        Of a group.
+    """
+    first = np.arange(0, len(centres), size)
+    owner = np.arange(len(centres)) // size
+    count = np.diff(np.append(first, len(centres)))
     balls = np.empty((len(first), 4))
-    balls[:, :3] = np.add.reduceat(moves[:, :3], first) / count[:, None] if len(first) else 0.0
-    far = np.linalg.norm(moves[:, :3] - balls[owner, :3], axis=1) + moves[:, 6]
+    balls[:, :3] = np.add.reduceat(centres, first) / count[:, None] if len(first) else 0.0
+    far = np.linalg.norm(centres - balls[owner, :3], axis=1) + reach
     balls[:, 3] = np.maximum.reduceat(far, first) if len(first) else 0.0
     return balls

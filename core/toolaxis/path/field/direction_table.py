@@ -92,7 +92,8 @@ class DirectionTable:
     ----------
     face : Face
     uv : (n, 2) array
-        Even places over the parameter range, u slowest, its borders among them: there passes are often narrowest.
+        Even places over the parameter range, u slowest, its borders among them: there passes are often narrowest.  Of
+        all of it, or those on the face alone.
     count : int
         Places each way.
     area : (n,) array
@@ -128,7 +129,7 @@ class DirectionTable:
         return float(self.area @ np.exp(best))
 
 
-def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
+def tabulate_directions(face: Face, cut: Cut, count: int, *, only_inside: bool = False) -> DirectionTable:
     """Widths of strips in all directions over a face.
 
     Parameters
@@ -138,6 +139,9 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
         With a fixed axis.
     count : int
         Places each way.
+    only_inside : bool
+        Leave out the places off the face: a field of passes needs them, the ideal length does not, and beside a small
+        piece of a strongly curved face a strip takes long to measure.
 
     Raises
     ------
@@ -154,6 +158,9 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     """
     _check_open(face)
     uv = even_places(face, count)
+    area = areas_of_places(face, uv, count)
+    if only_inside:
+        uv, area = uv[area > 0], area[area > 0]
     angles = np.arange(_DIRECTIONS) * np.pi / _DIRECTIONS
     frame = feed_frame(face, uv)
     halves = strip_width(face, cut.tool, np.repeat(uv, _DIRECTIONS, axis=0), cut.axis, cut.scallop,
@@ -161,19 +168,31 @@ def tabulate_directions(face: Face, cut: Cut, count: int) -> DirectionTable:
     width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), _DIRECTIONS)
     widest = width.max(axis=1)
     least = np.maximum(_NARROW * widest, _NARROWEST * cut.scallop)[:, None]
+    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),
+                          _fit(_tip_ways(face, cut, uv, angles), angles),
+                          bool((widest[area > 0] > _NARROWEST * cut.scallop).all()))
+
+
+def areas_of_places(face: Face, uv: Array, count: int) -> Array:
+    """What of a face each of its even places stands for, (n,) mm^2; 0 off the face.
+
+    Parameters
+    ----------
+    face : Face
+    uv : (count^2, 2) array
+        From `even_places`.
+    count : int
+    """
     inside = face.contains(uv)
+    if not inside.any():  # a sliver between the places
+        inside[:] = True
     u0, u1, v0, v1 = face.bounds
     d = face.evaluate(uv)
     share = np.ones(count)
     share[[0, -1]] = 0.5
     cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
-    if not inside.any():  # a sliver between the places
-        inside[:] = True
     area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
-    area *= face.area / area.sum()
-    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),
-                          _fit(_tip_ways(face, cut, uv, angles), angles),
-                          bool((widest[inside] > _NARROWEST * cut.scallop).all()))
+    return np.asarray(area * (face.area / area.sum()))
 
 
 def _check_open(face: Face) -> None:
@@ -256,7 +275,9 @@ def _tip_ways(face: Face, cut: Cut, uv: Array, angles: Array) -> Array:
     along = rates[0] / metric[:, :1]
     across = (rates[1] - metric[:, 1:2] * along) / metric[:, 2:]
     way = np.cos(angles)[:, None] * across[:, None] - np.sin(angles)[:, None] * along[:, None]
-    return np.asarray(np.maximum(np.linalg.norm(way, axis=2), _NARROWEST))
+    long = np.linalg.norm(way, axis=2)
+    # On a ripple much smaller than the cutter its tip goes a thousand times as far in one direction as in another.
+    return np.asarray(np.maximum(long, _NARROWEST * np.maximum(long.max(axis=1, keepdims=True), 1.0)))
 
 
 def _degree_two(angles: Array) -> Array:
