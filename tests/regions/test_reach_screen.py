@@ -46,7 +46,7 @@ def compare(part: Part, tools: list[Tool], faces: list[Face]) -> np.ndarray:
         groups = group_surroundings(face, scene.tolerance, part=part)
         for number, tool in enumerate(tools):
             judge = Feasibility(face, tool, groups, scene.tolerance)
-            seen = seen_cells(cells, tool, axes, scene.tolerance.min_lead)
+            seen = seen_cells(cells, tool, axes, scene.tolerance)
             assert not (free[number] & ~seen).any()
             for a, axis in enumerate(axes):
                 rows = drawn[seen[a, drawn]]
@@ -162,7 +162,7 @@ def test_dense_points_agree(scenes) -> None:
         for a, axis in enumerate(axes):
             x = unit(np.cross(axis, [1.0, 0, 0]))
             frame = np.stack([x, np.cross(axis, x), axis], axis=1)
-            for n in some[seen_cells(cells, tool, axes, scene.tolerance.min_lead)[a, some]]:
+            for n in some[seen_cells(cells, tool, axes, scene.tolerance)[a, some]]:
                 tip = tips(cells.point[n:n + 1], cells.normal[n:n + 1], axis, tool)
                 room = np.inf
                 for k, cloud in enumerate(clouds):

@@ -113,6 +113,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm (write --offset=-100,0,50 "
                           "for a negative one): no motion leaves the travel of the linear axes")
+    sub.add_argument("--least-lean", type=float, default=0.0, metavar="DEG",
+                     help="least angle between the axis of a ball end, tapered ones too, and the normal at every "
+                          "contact: at the tip of a ball the cutting speed is zero (default: 0, none is asked for; "
+                          "cutters with a flat bottom always keep half a degree)")
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")

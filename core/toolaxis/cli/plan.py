@@ -2,6 +2,8 @@
 
 from argparse import Namespace
 from collections.abc import Callable
+from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 from toolaxis.cli.display import show_progress
@@ -45,7 +47,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     one = tool if isinstance(tool, Tool) else None
     check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
                                          spec.inputs.objective, _roughness(given), given.orientations,
-                                         passes=given.passes))
+                                         passes=given.passes, least_lean=spec.inputs.tolerance.least_lean))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -80,7 +82,7 @@ def _spec(given: Namespace) -> Spec:
     feedrate = FEEDRATE if given.feedrate is None else given.feedrate
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
-                        given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
+                        given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
                         passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
@@ -89,6 +91,11 @@ def _spec(given: Namespace) -> Spec:
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
     return spec
+
+
+def _tolerance(given: Namespace) -> Tolerance:
+    """Tolerances, with the least lean of ball ends among them."""
+    return replace(Tolerance.of(given.tolerance), least_lean=radians(given.least_lean))
 
 
 def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:
@@ -105,6 +112,7 @@ def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:
     if len(found.tools) == 1:
         spec.inputs.check_tool(found.tools[0])
         return found.tools[0]
+    spec.inputs.check_lean(found.tools)
     return found.tools
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import degrees, isfinite, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,8 +154,50 @@ class PlanInputs:
         """
         return replace(self, feedrate=tool.feedrate or self.feedrate, spindle=tool.spindle or self.spindle)
 
+    def check_rack(self, tools: Sequence[Tool]) -> None:
+        """Check several tools to choose from.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+            The largest first.
+
+        Raises
+        ------
+        InvalidInput
+            As `check_tool` and `check_lean` say.
+        """
+        self._check_scallop(tools[0])
+        self.check_lean(tools)
+
+    def check_lean(self, tools: Sequence[Tool]) -> None:
+        """Check that the least lean is one that the ball ends among tools can keep.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+
+        Raises
+        ------
+        InvalidInput
+            When none of them has a ball end, or the lean is more than its sides allow.
+        """
+        lean = self.tolerance.least_lean
+        if lean == 0:
+            return
+        balls = [tool for tool in tools if tool.flat_radius == 0]
+        if not balls:
+            names = tools[0].name if len(tools) == 1 else "the tools"
+            raise InvalidInput(f"least lean is {degrees(lean):g} deg and {names} has no ball end: the least lean is for "
+                               "ball ends, tapered ones too; leave it out, or name a tool with a ball end")
+        for tool in balls:
+            most = pi / 2 - tool.half_angle
+            if lean >= most:
+                raise InvalidInput(f"least lean is {degrees(lean):g} deg and tool {tool.name} reaches {degrees(most):g} "
+                                   "deg from its axis at most: give a smaller least lean")
+
     def check_tool(self, tool: Tool) -> None:
-        """Check that the scallop is one that this cutter can leave.
+        """Check that the scallop is one that this cutter can leave, and that it can keep the least lean.
 
         Parameters
         ----------
@@ -164,8 +206,13 @@ class PlanInputs:
         Raises
         ------
         InvalidInput
-            When it is no tool, or the scallop height is not below the cutter's radius.
+            When it is no tool, the scallop height is not below the cutter's radius, or the least lean does not go
+            with it.
         """
+        self._check_scallop(tool)
+        self.check_lean((tool,))
+
+    def _check_scallop(self, tool: Tool) -> None:
         if not isinstance(tool, Tool):
             raise InvalidInput(f"tool is {tool!r}: give a Tool, its short form (torus:12x1), a file or a name")
         if self.scallop >= tool.radius:

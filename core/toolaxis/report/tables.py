@@ -1,7 +1,7 @@
 """Tables for the terminal: the faces of a part, the operations of a plan, the verdict."""
 
 from collections.abc import Mapping, Sequence
-from math import inf, isfinite
+from math import degrees, inf, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -119,9 +119,20 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, stock_line(plan), _ideal(plan), points, reckoning(plan),
+    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, lean_line(plan), stock_line(plan), _ideal(plan), points, reckoning(plan),
              _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def lean_line(plan: Plan) -> str:
+    """How far ball ends lean at least, as a sentence; empty where that is not asked for.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    lean = plan.inputs.tolerance.least_lean
+    return f"ball ends lean {degrees(lean):g} deg at least from the normal at every contact" if lean > 0 else ""
 
 
 def stock_line(plan: Plan) -> str:

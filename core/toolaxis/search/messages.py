@@ -38,6 +38,8 @@ _PASSED = {LIMITS: "", BACK: " inside the limits", WANDERS: " that see all of th
 COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal for the flat bottom",
            "with a gouge", "with a collision of the cutter", "with a collision of the shank",
            "with a collision of the holder")
+#: The same of a ball end, which has no flat bottom.
+LEANS_TOO_LITTLE = "too near to a normal for the least lean"
 
 #: How sentences end, or begin, that tell what an operation leaves.
 LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
@@ -156,6 +158,8 @@ def _angle(found: Violation, feasibility: Feasibility) -> str:
         return f"the axis is {angle} deg from {of}, and the cutter reaches {limit} deg at most"
     least = degrees(feasibility.least_angle)
     angle, limit = format_apart(max(least - degrees(abs(found.amount)), 0.0), least, 2)
+    if feasibility.tool.flat_radius == 0:
+        return f"the axis is only {angle} deg from {of}: the least lean of a ball end is {limit} deg"
     return f"the axis is only {angle} deg from {of}: a flat bottom needs a lead of {limit} deg"
 
 
@@ -254,7 +258,10 @@ def tally(ledger: AxisTable) -> str:
     ledger : AxisTable
     """
     counts = np.bincount(ledger.reason, minlength=len(REASONS))
-    parts = [f"{counts[k]} {COUNTED[k]}" for k in range(1, len(REASONS)) if counts[k]]
+    words = list(COUNTED)
+    if ledger.feasibility.tool.flat_radius == 0:
+        words[WANDERS] = LEANS_TOO_LITTLE
+    parts = [f"{counts[k]} {words[k]}" for k in range(1, len(REASONS)) if counts[k]]
     return f"{len(ledger.axes)} axes tested: " + (", ".join(parts) if parts else "none was refused")
 
 

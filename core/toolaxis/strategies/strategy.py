@@ -52,6 +52,8 @@ class Asked:
         How a machine is given where a strategy misses one.
     passes : str
         One of `toolaxis.plan.choices.PASSES`.
+    least_lean : float
+        Least angle between the axis of a ball end and the normal at its contacts, rad; 0 for none.
     """
 
     tool: "Tool | None"
@@ -63,6 +65,7 @@ class Asked:
     held: str = ""
     remedy: str = "name a machine"
     passes: str = ISO
+    least_lean: float = 0.0
 
 
 class Strategy(Protocol):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.verify.axis_limits import machine_faults
 from toolaxis.verify.component_clearance import FAR, Clearance, clearance
+from toolaxis.verify.contact_leans import UNCERTAINTY, ContactLean, least_lean
 from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.held_side import distance_to_held_side
@@ -83,6 +85,9 @@ class OperationVerdict:
         How far stock stands above the finished faces that carry it, mm.
     from_stock : dict of str to Clearance
         Distances from those finished faces: of "shank" and "holder", and of the cutter on links, `AT_RAPID`.
+    lean : ContactLean, optional
+        Where a ball end leans least from the normal at its contact; None where no lean is asked for, the cutter is no
+        ball end, or it touches nothing.
     """
 
     name: str
@@ -108,6 +113,7 @@ class OperationVerdict:
     maps: tuple[SurfaceMap, ...]
     stock: float = 0.0
     from_stock: dict[str, Clearance] = field(default_factory=dict)
+    lean: ContactLean | None = None
 
     @property
     def measured(self) -> bool:
@@ -342,7 +348,8 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
-    failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
+    lean = _find_lean(task)
+    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
                 *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
@@ -353,7 +360,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        maps, task.stock, measured.from_stock)
+        maps, task.stock, measured.from_stock, lean)
 
 
 def _axis_reasons(task: VerificationTask) -> list[str]:
@@ -365,6 +372,22 @@ def _axis_reasons(task: VerificationTask) -> list[str]:
         return []
     return [f"the plan names the axis {_axis_text(task.named)}, and the tool stands at {_axis_text(task.axes[i])} at "
             f"point {i + 1}: plan the operation again"]
+
+
+def _find_lean(task: VerificationTask) -> ContactLean | None:
+    """The least lean of a ball end of which one is asked for."""
+    if task.tolerance.least_lean == 0 or task.profile.flat_radius > 0:
+        return None
+    above = task.scallop + task.tolerance.gouge
+    return least_lean((task.tips, task.axes, task.kind), task.profile, task.targets, (task.allowance, above))
+
+
+def _lean_reasons(task: VerificationTask, lean: ContactLean | None) -> list[str]:
+    least = task.tolerance.least_lean
+    if lean is None or lean.angle >= least - UNCERTAINTY:
+        return []
+    return [f"the ball end leans {degrees(lean.angle):.2f} deg from the normal of face {lean.face} at "
+            f"{spot(lean.point)}, needed {degrees(least):g} deg, on the {motion_of(task, lean.motion)}"]
 
 
 def _axis_text(axis: Array) -> str:

@@ -251,4 +251,5 @@ def _operation_document(op: OperationVerdict) -> dict[str, Any]:
             "worst_scallop": [_place(p) for p in op.worst_scallop],
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
             "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
+            "least_lean": None if op.lean is None else op.lean.angle,
             "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}

@@ -64,7 +64,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
-         progress: Progress = NO_PROGRESS) -> Plan:
+         least_lean: float | None = None, progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
     Parameters
@@ -157,6 +157,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         given. The result is the same for any number.
     most_tools : int, optional
         Greatest number of tools that are used, where several are given.
+    least_lean : float, optional
+        Least angle between the axis of a ball end, tapered ones too, and the normal at every contact, rad; below 90
+        degrees.  `tolerance.least_lean` unless given, which is none unless given either.
     progress : Progress
 
     Returns
@@ -182,21 +185,28 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     if objective is None:
         timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
         objective = "time" if timed else "length"
+    limits_kept = Tolerance.of(tolerance)
+    if least_lean is not None:
+        limits_kept = replace(limits_kept, least_lean=float(least_lean))
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
     chosen = check_strategy(strategy, Asked(
         cutter, None if mounting is None else mounting.machine, method, objective,
-        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes))
+        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
+        least_lean=limits_kept.least_lean))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
     inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words,
                         FEEDRATE if feedrate is None else float(feedrate),
-                        SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
+                        SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
                         numbers_to_avoid(avoid), held, float(stock))
     if objective == "time":
         require_machine_limits(mounting)
-    inputs.check_tool(cutter)
+    if len(rack.tools) > 1:
+        inputs.check_rack(rack.tools)
+    else:
+        inputs.check_tool(cutter)
     loaded = load(part).avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)

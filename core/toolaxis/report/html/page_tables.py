@@ -218,7 +218,7 @@ def setting_rows(plan: Plan, source: str) -> Rows:
 
 
 def _tolerance(name: str, value: float) -> str:
-    return f"{np.degrees(value):g}°" if name == "min_lead" else f"{value:g}" + ("" if name == "trim" else " mm")
+    return f"{np.degrees(value):g}°" if name in ("min_lead", "least_lean") else f"{value:g}" + ("" if name == "trim" else " mm")
 
 
 def _outline(rows: Array | None) -> str:

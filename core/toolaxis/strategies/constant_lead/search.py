@@ -103,7 +103,7 @@ class ConstantLeadSearch:
     def candidates(self) -> list[_Lead]:
         """Free leads, those with the shortest passes, or the fewest, first."""
         found = []
-        least = degrees(self.job.feasibility.least_angle)
+        least = degrees(self.job.feasibility.least_angle_in_motion)
         leads = sorted({max(lead, least) for lead in LEADS})
         for number, (feed, sense) in enumerate((feed, sense) for feed in FEEDS for sense in (1.0, -1.0)):
             self.job.progress.report("leads", number, 4)

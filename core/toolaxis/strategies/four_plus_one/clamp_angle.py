@@ -171,7 +171,7 @@ class ClampSearch:
 
     @property
     def _upright(self) -> float:
-        return float(max(self.job.feasibility.least_angle, _UPRIGHT))
+        return float(max(self.job.feasibility.least_angle_in_motion, _UPRIGHT))
 
     def _widths(self, clamp: Clamp, feed: str, angles: Array) -> Array:
         """Strip widths in the step parameter, (j, i, k); 0 where there is none, infinite off the face."""
