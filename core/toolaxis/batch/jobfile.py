@@ -171,8 +171,8 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     obstacles = row.get("obstacles", ())
     bodies = tuple(_body(body, folder) for body in
                    (row["part"], *(obstacles if isinstance(obstacles, list | tuple) else (obstacles,))))
-    values = {name: _value(name, row[name], kind) for name, kind in {**_INPUTS, **_OF_TOLERANCE, **_ASKED, **_OWN}.items()
-              if name in row}
+    kinds = {**_INPUTS, **_OF_TOLERANCE, **_ASKED, **_OWN}
+    values = {name: _value(name, row[name], kind) for name, kind in kinds.items() if name in row}
     if "least_lean" in values:
         tolerance = values.get("tolerance", Tolerance())
         values["tolerance"] = replace(tolerance, least_lean=radians(values["least_lean"]))

@@ -187,14 +187,14 @@ class PlanInputs:
             return
         balls = [tool for tool in tools if tool.flat_radius == 0]
         if not balls:
-            names = tools[0].name if len(tools) == 1 else "the tools"
-            raise InvalidInput(f"least lean is {degrees(lean):g} deg and {names} has no ball end: the least lean is for "
-                               "ball ends, tapered ones too; leave it out, or name a tool with a ball end")
+            names = ", ".join(tool.name for tool in tools)
+            raise InvalidInput(f"least lean is {degrees(lean):g} deg and no ball end is among the tools ({names}): "
+                               "leave the lean out, or name a tool with a ball end, tapered or not")
         for tool in balls:
             most = pi / 2 - tool.half_angle
             if lean >= most:
-                raise InvalidInput(f"least lean is {degrees(lean):g} deg and tool {tool.name} reaches {degrees(most):g} "
-                                   "deg from its axis at most: give a smaller least lean")
+                raise InvalidInput(f"least lean is {degrees(lean):g} deg and tool {tool.name} reaches "
+                                   f"{degrees(most):g} deg from its axis at most: give a smaller least lean")
 
     def check_tool(self, tool: Tool) -> None:
         """Check that the scallop is one that this cutter can leave, and that it can keep the least lean.

@@ -119,7 +119,8 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, lean_line(plan), stock_line(plan), _ideal(plan), points, reckoning(plan),
+    asked = (lean_line(plan), stock_line(plan))
+    notes = (_of_part(plan), _describe_held(plan), _BOUNDS, *asked, _ideal(plan), points, reckoning(plan),
              _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
 

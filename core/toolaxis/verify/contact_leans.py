@@ -26,8 +26,8 @@ _ON_MOTION = (0.25, 0.5, 0.75)
 class ContactLean(NamedTuple):
     """The least lean of a ball end.
 
-    angle : float, rad, of its axis from the normal at a contact;  face : label;  point : the contact, mm;  motion : int,
-    index of the cutter location at which the motion arrives.
+    angle : float, rad, of its axis from the normal at a contact;  face : label;  point : the contact, mm;
+    motion : int, index of the cutter location at which the motion arrives.
     """
 
     angle: float

@@ -349,8 +349,9 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     lean = _find_lean(task)
-    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
-                *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
+    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_scallop_reasons(task, share, zones, area),
+                *_gouge_reasons(task, gouge, gouges), *_edge_reasons(task, edge), *_link_reasons(task, link_cut),
+                *_room_reasons(task, rooms),
                 *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"

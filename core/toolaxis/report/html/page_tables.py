@@ -218,7 +218,9 @@ def setting_rows(plan: Plan, source: str) -> Rows:
 
 
 def _tolerance(name: str, value: float) -> str:
-    return f"{np.degrees(value):g}°" if name in ("min_lead", "least_lean") else f"{value:g}" + ("" if name == "trim" else " mm")
+    if name in ("min_lead", "least_lean"):
+        return f"{np.degrees(value):g}°"
+    return f"{value:g}" + ("" if name == "trim" else " mm")
 
 
 def _outline(rows: Array | None) -> str:
