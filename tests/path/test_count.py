@@ -185,7 +185,7 @@ def test_the_kernel_and_its_twin_agree(make):
     for table in ready.rows:
         one = ready._sums(table, axes, ratio)
         two = np.empty(4), np.empty(4)
-        sum_rows_numpy(table, axes, ratio, ready.leans, (ready._cutter(), 0.02), *two)
+        sum_rows_numpy(table, axes, ratio, ready.leans, (ready._cutter(), 0.02, np.inf), *two)
         assert np.allclose(one, two, rtol=1e-12)
 
 

@@ -30,7 +30,8 @@ from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
-_INPUTS = {"scallop": float, "allowance": float, "stock": float, "method": str, "objective": str, "direction": str,
+_INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_over": float,
+           "method": str, "objective": str, "direction": str,
            "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
            "passes": str, "avoid": "avoided", "held": str}
 #: What is written among the tolerances of a plan.
@@ -195,7 +196,8 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
            **{name: values[name] for name in _OWN if name in values}, **{name: values.get(name) for name in _OF_TOOL}}
     chosen = check_strategy(own["strategy"], Asked(
         tools[0], machine, spec.inputs.method, spec.inputs.objective, _in_mm(own["roughness"]), spec.orientations,
-        passes=spec.inputs.passes, least_lean=spec.inputs.tolerance.least_lean))
+        passes=spec.inputs.passes, least_lean=spec.inputs.tolerance.least_lean,
+        greatest_step_over=spec.inputs.greatest_step_over))
     if len(tools) > 1:
         check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions is not None,
                                      spec.orientations is not None, compare=own["compare"]))

@@ -135,6 +135,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--stock", type=float, default=0.0, metavar="MM",
                      help="what roughing left on the faces of this plan, above the finished surface: shank, holder and "
                           "rapid moves stay clear of all of it (default: 0, no stock is looked out for)")
+    sub.add_argument("--greatest-step-over", type=float, default=0.0, metavar="MM",
+                     help="greatest distance of neighbouring passes on the face, whatever the scallop height allows "
+                          "(default: 0, none)")
     sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
     sub.add_argument("--passes", default=ISO, choices=PASSES,
                      help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "

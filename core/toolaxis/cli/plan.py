@@ -47,7 +47,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     one = tool if isinstance(tool, Tool) else None
     check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
                                          spec.inputs.objective, _roughness(given), given.orientations,
-                                         passes=given.passes, least_lean=spec.inputs.tolerance.least_lean))
+                                         passes=given.passes, least_lean=spec.inputs.tolerance.least_lean,
+                                         greatest_step_over=spec.inputs.greatest_step_over))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -63,7 +64,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
-                        most_tools=given.most_tools, progress=progress)
+                        most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
+                        progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")
@@ -83,7 +85,8 @@ def _spec(given: Namespace) -> Spec:
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
                         given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
-                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock)
+                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock,
+                        greatest_step_over=given.greatest_step_over)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import degrees, isfinite, pi
+from math import degrees, inf, isfinite, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,6 +77,8 @@ class PlanInputs:
         The side that is held in the clamping, in the short form of the command; empty for none.
     stock : float
         What roughing left on the finished faces, mm; 0 where they are taken as finished.  `Part.stock` says on which.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm, whatever the scallop height allows; 0 for none.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class PlanInputs:
     avoid: tuple[int, ...] = ()
     held: str = ""
     stock: float = 0.0
+    greatest_step_over: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -110,6 +113,9 @@ class PlanInputs:
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
         self._check_stock()
+        if not (isfinite(self.greatest_step_over) and self.greatest_step_over >= 0):
+            raise InvalidInput(f"greatest step-over is {self.greatest_step_over} mm: it must be finite and above zero, "
+                               "or 0 for none")
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):
@@ -139,6 +145,11 @@ class PlanInputs:
             When its short form is not understood.
         """
         return parse_half_space(self.held) if self.held else None
+
+    @property
+    def step_over(self) -> float:
+        """Greatest distance of neighbouring passes, mm; infinite where none is asked for."""
+        return self.greatest_step_over or inf
 
     @property
     def chord(self) -> float:

@@ -119,7 +119,7 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    asked = (lean_line(plan), stock_line(plan))
+    asked = (step_over_line(plan), lean_line(plan), stock_line(plan))
     notes = (_of_part(plan), _describe_held(plan), _BOUNDS, *asked, _ideal(plan), points, reckoning(plan),
              _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
@@ -134,6 +134,17 @@ def lean_line(plan: Plan) -> str:
     """
     lean = plan.inputs.tolerance.least_lean
     return f"ball ends lean {degrees(lean):g} deg at least from the normal at every contact" if lean > 0 else ""
+
+
+def step_over_line(plan: Plan) -> str:
+    """How far passes lie apart at most, as a sentence; empty where the scallop height alone decides.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    most = plan.inputs.greatest_step_over
+    return f"passes lie {most:g} mm apart at most, whatever the scallop height allows" if most > 0 else ""
 
 
 def stock_line(plan: Plan) -> str:

@@ -21,6 +21,8 @@ from toolaxis.verify.held_side import distance_to_held_side
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
 from toolaxis.verify.material_removal import Removal, RestMaterial
+from toolaxis.verify.pass_distances import FACTOR as STEP_OVER_FACTOR
+from toolaxis.verify.pass_distances import MeasuredFace, PassDistance, greatest_distance
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.task import VerificationTask, motion_of, spot
@@ -88,6 +90,9 @@ class OperationVerdict:
     lean : ContactLean, optional
         Where a ball end leans least from the normal at its contact; None where no lean is asked for, the cutter is no
         ball end, or it touches nothing.
+    step_over : PassDistance, optional
+        Where neighbouring passes lie farthest apart; None where no greatest step-over is asked for, or they lie nowhere
+        near as far apart.
     """
 
     name: str
@@ -114,6 +119,7 @@ class OperationVerdict:
     stock: float = 0.0
     from_stock: dict[str, Clearance] = field(default_factory=dict)
     lean: ContactLean | None = None
+    step_over: PassDistance | None = None
 
     @property
     def measured(self) -> bool:
@@ -348,8 +354,9 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
-    lean = _find_lean(task)
-    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_scallop_reasons(task, share, zones, area),
+    lean, step_over = _find_lean(task), _find_step_over(task, targets)
+    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_step_over_reasons(task, step_over),
+                *_scallop_reasons(task, share, zones, area),
                 *_gouge_reasons(task, gouge, gouges), *_edge_reasons(task, edge), *_link_reasons(task, link_cut),
                 *_room_reasons(task, rooms),
                 *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
@@ -361,7 +368,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        maps, task.stock, measured.from_stock, lean)
+        maps, task.stock, measured.from_stock, lean, step_over)
 
 
 def _axis_reasons(task: VerificationTask) -> list[str]:
@@ -389,6 +396,23 @@ def _lean_reasons(task: VerificationTask, lean: ContactLean | None) -> list[str]
         return []
     return [f"the ball end leans {degrees(lean.angle):.2f} deg from the normal of face {lean.face} at "
             f"{spot(lean.point)}, needed {degrees(least):g} deg, on the {motion_of(task, lean.motion)}"]
+
+
+def _find_step_over(task: VerificationTask, maps: tuple[SurfaceMap, ...]) -> PassDistance | None:
+    """The greatest distance of neighbouring passes, declared zones aside, where one is asked for."""
+    if task.greatest_step_over == 0:
+        return None
+    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing) for one in maps]
+    off = task.scallop + task.tolerance.gouge
+    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces, (task.allowance, off),
+                             task.greatest_step_over)
+
+
+def _step_over_reasons(task: VerificationTask, found: PassDistance | None) -> list[str]:
+    most = task.greatest_step_over
+    if found is None or found.distance <= STEP_OVER_FACTOR * most:
+        return []
+    return [f"passes lie {found.distance:.3f} mm apart on face {found.face} at {spot(found.point)}, allowed {most:g} mm"]
 
 
 def _axis_text(axis: Array) -> str:

@@ -144,7 +144,7 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
                             before=_end_of(last, op.tool), held=_side_for_judge(plan), stock=plan.inputs.stock,
-                            proud=_proud(plan))
+                            proud=_proud(plan), greatest_step_over=plan.inputs.greatest_step_over)
 
 
 def _side_for_judge(plan: Plan) -> HeldSide | None:
@@ -252,4 +252,5 @@ def _operation_document(op: OperationVerdict) -> dict[str, Any]:
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
             "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
             "least_lean": None if op.lean is None else op.lean.angle,
+            "step_over": None if op.step_over is None else op.step_over.distance,
             "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}

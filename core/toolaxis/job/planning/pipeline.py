@@ -64,7 +64,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
-         least_lean: float | None = None, progress: Progress = NO_PROGRESS) -> Plan:
+         least_lean: float | None = None, greatest_step_over: float = 0.0, progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
     Parameters
@@ -160,6 +160,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     least_lean : float, optional
         Least angle between the axis of a ball end, tapered ones too, and the normal at every contact, rad; below 90
         degrees.  `tolerance.least_lean` unless given, which is none unless given either.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows; 0 for none.
     progress : Progress
 
     Returns
@@ -192,7 +194,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     chosen = check_strategy(strategy, Asked(
         cutter, None if mounting is None else mounting.machine, method, objective,
         None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
-        least_lean=limits_kept.least_lean))
+        least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over)))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
@@ -200,7 +202,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                         FEEDRATE if feedrate is None else float(feedrate),
                         SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
-                        numbers_to_avoid(avoid), held, float(stock))
+                        numbers_to_avoid(avoid), held, float(stock), float(greatest_step_over))
     if objective == "time":
         require_machine_limits(mounting)
     if len(rack.tools) > 1:
