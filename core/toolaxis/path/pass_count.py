@@ -228,7 +228,8 @@ def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
         near, far = away[k], max(away[k], (s1 - s0) / 2)
         for _ in range(_HALVED):
             middle = (near + far) / 2
-            ends = limited_half_widths(chart, cut, along, np.full(len(along), border[k] + inwards[k] * middle))[:, k] - middle
+            there = np.full(len(along), border[k] + inwards[k] * middle)
+            ends = limited_half_widths(chart, cut, along, there)[:, k] - middle
             near, far = (middle, far) if (np.abs(ends - past[0, k]) <= _SAME * middle).all() else (near, middle)
         away[k] = near
     return np.asarray(np.where(away == np.abs(step - border), step, border + inwards * away))

@@ -369,14 +369,16 @@ def space(chart: Chart, cut: Cut, across: Lines, material: Array, progress: Prog
         guess = _forecast(steps, halves, front, across)
         progress.report("passes", min(max((place - s0) / (s1 - s0), 0.0), 1.0), 1.0)
         if len(steps) > _MOST_PASSES:
-            raise InvalidInput(f"more than {_MOST_PASSES} passes on face {chart.face.label}: "
-                               f"the {_too_small(cut)} is too small for its size")
+            limited = np.isfinite(cut.greatest_step_over)
+            raise InvalidInput(_too_many(chart.face.label) if limited else (
+                f"more than {_MOST_PASSES} passes on face {chart.face.label}: "
+                "the scallop height is too small for its size"))
     return Spacing(np.array(steps), float(min(unused, 1.0)), across,
                    np.array(halves).reshape(len(steps), len(across.measured), 2))
 
 
-def _too_small(cut: Cut) -> str:
-    return "greatest step-over" if np.isfinite(cut.greatest_step_over) else "scallop height"
+def _too_many(label: str) -> str:
+    return f"more than {_MOST_PASSES} passes on face {label}: the greatest step-over is too small for its size"
 
 
 def _only_place(room: tuple[float, float], middle: float, material: Array) -> float:

@@ -113,9 +113,7 @@ class PlanInputs:
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
         self._check_stock()
-        if not (isfinite(self.greatest_step_over) and self.greatest_step_over >= 0):
-            raise InvalidInput(f"greatest step-over is {self.greatest_step_over} mm: it must be finite and above zero, "
-                               "or 0 for none")
+        self._check_step_over()
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):
@@ -134,6 +132,14 @@ class PlanInputs:
         if 0 < self.stock < self.allowance:
             raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {self.allowance} mm: give at least "
                                "the allowance, or 0 where no stock is to be looked out for")
+
+    def _check_step_over(self) -> None:
+        most = self.greatest_step_over
+        if not (isfinite(most) and most >= 0):
+            raise InvalidInput(f"greatest step-over is {most} mm: it must be finite and above zero, or 0 for none")
+        if 0 < most < self.scallop:
+            raise InvalidInput(f"greatest step-over is {most} mm, below the scallop height of {self.scallop} mm: give "
+                               "a larger step-over, or a smaller scallop height")
 
     @property
     def half_space_held(self) -> HalfSpace | None:

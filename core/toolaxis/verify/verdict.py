@@ -412,7 +412,8 @@ def _step_over_reasons(task: VerificationTask, found: PassDistance | None) -> li
     most = task.greatest_step_over
     if found is None or found.distance <= STEP_OVER_FACTOR * most:
         return []
-    return [f"passes lie {found.distance:.3f} mm apart on face {found.face} at {spot(found.point)}, allowed {most:g} mm"]
+    return [f"passes lie {found.distance:.3f} mm apart, allowed {most:g} mm, on face {found.face} at "
+            f"{spot(found.point)}"]
 
 
 def _axis_text(axis: Array) -> str:

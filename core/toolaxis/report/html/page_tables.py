@@ -190,8 +190,8 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     """
     given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid))}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
-    units = {"scallop": "mm", "allowance": "mm", "stock": "mm", "greatest_step_over": "mm", "feedrate": "mm/min", "rapid": "mm/min",
-             "spindle": "rev/min"}
+    units = {**dict.fromkeys(("scallop", "allowance", "stock", "greatest_step_over"), "mm"),
+             "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
             for name, value in given.items()]
     names = {"gouge": "machining tolerance"}
