@@ -16,7 +16,7 @@ from toolaxis.batch.task import BatchTask, PartBytes
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
-from toolaxis.job.inputs.spec import Spec, numbers_to_avoid
+from toolaxis.job.inputs.spec import Spec, numbers_to_avoid, parse_allowances
 from toolaxis.job.inputs.tool_library import GENERAL_RACK, load_library
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
@@ -33,7 +33,7 @@ from toolaxis.tools.tool import Tool
 _INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_over": float,
            "method": str, "objective": str, "direction": str,
            "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
-           "passes": str, "avoid": "avoided", "held": str}
+           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances"}
 #: What is written among the tolerances of a plan.
 _OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
@@ -300,6 +300,8 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return value
     if kind == "avoided":
         return numbers_to_avoid(value)
+    if kind == "allowances":
+        return parse_allowances(value)
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

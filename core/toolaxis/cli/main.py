@@ -132,6 +132,9 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="what is least: cutting length, number of passes, or the time that --machine takes (default: "
                           "length; time with several tools on a machine that states the limits of its axes)")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
+    sub.add_argument("--allowance-on", action="append", default=[], metavar="FACES=MM",
+                     help="stock left on some faces in place of --allowance, such as 3,5-8=0.3: they are machined to "
+                          "that height, and no tool goes deeper there on other faces; may be repeated")
     sub.add_argument("--stock", type=float, default=0.0, metavar="MM",
                      help="what roughing left on the faces of this plan, above the finished surface: shank, holder and "
                           "rapid moves stay clear of all of it (default: 0, no stock is looked out for)")

@@ -11,7 +11,7 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
-from toolaxis.job.inputs.spec import Spec, parse_avoided
+from toolaxis.job.inputs.spec import Spec, parse_allowances, parse_avoided
 from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
@@ -65,6 +65,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
+                        allowance_on=spec.inputs.allowance_on,
                         progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
@@ -86,7 +87,8 @@ def _spec(given: Namespace) -> Spec:
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
                         given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
                         passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock,
-                        greatest_step_over=given.greatest_step_over)
+                        greatest_step_over=given.greatest_step_over,
+                        allowance_on=parse_allowances(given.allowance_on))
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""

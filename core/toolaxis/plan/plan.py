@@ -18,6 +18,8 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.timing import Order
 from toolaxis.plugins import one_of
+from toolaxis.shape.allowances import Allowances
+from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
 from toolaxis.shape.stock import MOST_STOCK
@@ -79,6 +81,9 @@ class PlanInputs:
         What roughing left on the finished faces, mm; 0 where they are taken as finished.  `Part.stock` says on which.
     greatest_step_over : float
         Greatest distance of neighbouring passes, mm, whatever the scallop height allows; 0 for none.
+    allowance_on : tuple of (int, float)
+        Faces on which an allowance of their own is left, in place of `allowance`, with that, mm; by numbers of the
+        file's faces.
 
     Raises
     ------
@@ -103,6 +108,7 @@ class PlanInputs:
     held: str = ""
     stock: float = 0.0
     greatest_step_over: float = 0.0
+    allowance_on: tuple[tuple[int, float], ...] = ()
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -112,6 +118,7 @@ class PlanInputs:
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        Allowances(self.allowance, dict(self.allowance_on))
         self._check_stock()
         self._check_step_over()
         if not (isfinite(self.roughness) and self.roughness >= 0):
@@ -129,9 +136,20 @@ class PlanInputs:
     def _check_stock(self) -> None:
         if not (isfinite(self.stock) and 0 <= self.stock <= MOST_STOCK):
             raise InvalidInput(f"stock is {self.stock} mm: it must be zero or more, and at most {MOST_STOCK:g} mm")
-        if 0 < self.stock < self.allowance:
-            raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {self.allowance} mm: give at least "
+        most = max([self.allowance, *(value for _, value in self.allowance_on)])
+        if 0 < self.stock < most:
+            raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {most} mm: give at least "
                                "the allowance, or 0 where no stock is to be looked out for")
+
+    def allowance_of(self, face: Face) -> float:
+        """What is left on a face, mm.
+
+        Parameters
+        ----------
+        face : Face
+            Of the part; on all faces of a joined one the same is left.
+        """
+        return Allowances(self.allowance, dict(self.allowance_on)).of(face)
 
     def _check_step_over(self) -> None:
         most = self.greatest_step_over

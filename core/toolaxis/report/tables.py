@@ -119,10 +119,21 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    asked = (step_over_line(plan), lean_line(plan), stock_line(plan))
+    asked = (allowance_line(plan), step_over_line(plan), lean_line(plan), stock_line(plan))
     notes = (_of_part(plan), _describe_held(plan), _BOUNDS, *asked, _ideal(plan), points, reckoning(plan),
              _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def allowance_line(plan: Plan) -> str:
+    """What is left on which faces, as a sentence; empty where it is the same on all of them.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    kept = plan.part.allowances
+    return "" if kept is None else f"left on purpose: {kept.described}"
 
 
 def lean_line(plan: Plan) -> str:

@@ -184,7 +184,11 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     which = f"face {found.label}" if found.label else "what stands around"
     if found.label == HELD_SIDE:
         which = "the held side"
-    stock = 0.0 if found.reason == CUTTER else _stock_on(found, feasibility)
+    left = _left_on(found, feasibility)
+    if left > 0:
+        needed += left
+        which = f"face {found.label} ({left:g} mm are left on it)"
+    stock = 0.0 if found.reason == CUTTER else _stock_on(found, feasibility) - left
     if stock > 0:
         needed += stock
         which = f"face {found.label} (finished; {stock:g} mm of stock on it)"
@@ -206,6 +210,12 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
         return (f"the {name} comes within {near} mm of {which}{_at(found)}; {needed:g} mm is required, and {MARGIN:g} "
                 "mm more to be sure")
     return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
+
+
+def _left_on(found: Violation, feasibility: Feasibility) -> float:
+    """What is left on purpose on the face that a witness names, mm."""
+    return max((group.allowance for group in feasibility.groups for face in group.faces if face.label == found.label),
+               default=0.0)
 
 
 def _stock_on(found: Violation, feasibility: Feasibility) -> float:

@@ -74,6 +74,8 @@ class VerificationTask:
         The part's own faces that carry it.
     greatest_step_over : float
         Greatest distance of neighbouring passes on the targets, mm; 0 where none is asked for.
+    left_on : tuple of (Face, float)
+        The part's own faces that keep an allowance, with that, mm, without the targets: no motion goes deeper.
     """
 
     name: str
@@ -101,6 +103,7 @@ class VerificationTask:
     stock: float = 0.0
     proud: tuple[Face, ...] = ()
     greatest_step_over: float = 0.0
+    left_on: tuple[tuple[Face, float], ...] = ()
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):

@@ -356,10 +356,10 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
     lean, step_over = _find_lean(task), _find_step_over(task, targets)
     failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_step_over_reasons(task, step_over),
-                *_scallop_reasons(task, share, zones, area),
-                *_gouge_reasons(task, gouge, gouges), *_edge_reasons(task, edge), *_link_reasons(task, link_cut),
-                *_room_reasons(task, rooms),
-                *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
+                *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
+                *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
+                *_reasons_of_held_side(task), *_reasons_of_allowances(task), *_stock_reasons(task, measured.from_stock),
+                *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
              for name, room in rooms.items() if room == NOT_CHECKED]
@@ -477,6 +477,22 @@ def _reasons_of_held_side(task: VerificationTask) -> list[str]:
             verb = f"is {found.distance:.4f} mm from" if found.distance >= 0 else (
                 f"is {-found.distance:.4f} mm inside")
             reasons.append(f"{name} {verb} the held side, needed {need} mm, on the {motion_of(task, found.motion)}")
+    return reasons
+
+
+def _reasons_of_allowances(task: VerificationTask) -> list[str]:
+    """What is to be said of components that go into what is left on other faces on purpose, or come too near to it."""
+    reasons = []
+    components = {"cutter": cutter_solid(task.profile),
+                  **{name: frustum_solids(outline, name) for name, outline in task.outlines.items()}}
+    for left in sorted({value for _, value in task.left_on}):
+        faces = tuple(face for face, value in task.left_on if value == left)
+        for name, solids in components.items():
+            need = left - task.tolerance.gouge if name == "cutter" else left + _clearance_of(task, name)
+            room = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=need)
+            if room.distance < min(need, FAR):
+                reasons.append(f"{name} {_gap(room)} face {room.face} at {spot(room.point)}, on which {left:g} mm are "
+                               f"left, needed {need:g} mm, on the {motion_of(task, room.motion)}")
     return reasons
 
 

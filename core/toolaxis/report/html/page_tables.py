@@ -188,7 +188,8 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     source : str
         Where the part came from.
     """
-    given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid))}
+    given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid)),
+             "allowance_on": "" if plan.part.allowances is None else plan.part.allowances.described}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
     units = {**dict.fromkeys(("scallop", "allowance", "stock", "greatest_step_over"), "mm"),
              "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
