@@ -216,8 +216,8 @@ def parse_allowances(given: Mapping[Any, float] | Iterable[Any] | str | None) ->
     found: dict[int, float] = {}
     for number, value in pairs:
         if found.setdefault(number, value) != value:
-            raise InvalidInput(f"face {number} is to keep an allowance of {found[number]:g} mm and one of {value:g} mm: "
-                               "give one of them")
+            raise InvalidInput(f"face {number} is to keep an allowance of {found[number]:g} mm and one of {value:g} "
+                               "mm: give one of them")
     Allowances(0.0, found)
     return tuple(sorted(found.items()))
 

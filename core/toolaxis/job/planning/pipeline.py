@@ -72,7 +72,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
          least_lean: float | None = None, greatest_step_over: float = 0.0,
-         allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None, progress: Progress = NO_PROGRESS) -> Plan:
+         allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None,
+         progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
     Parameters
