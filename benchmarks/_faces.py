@@ -20,7 +20,8 @@ _KINDS = (("memory", r"MemoryError|out of memory|Unable to allocate"),
                              r"more than a hemisphere"))
 #: The same by the constraint that an axis breaks, where nothing else is known.
 _CONSTRAINTS = (("gouge", r"gouges"), ("holder", r"the holder"), ("shank", r"the shank"),
-                ("cutter at walls", r"the cutter (meets|comes|collides|is not)"), ("wanders", r"wanders|flat bottom"),
+                ("cutter at walls", r"the cutter (meets|comes|collides|is not)"),
+                ("wanders", r"wanders|flat bottom|least lean"),
                 ("normals spread", r"leans|no axis sees|deg from a normal"), ("limits", r"outside the limits"))
 #: What the axes of a search were refused for, as the reasons count them.
 _COUNTED = {"gouge": "with a gouge", "holder": "with a collision of the holder",

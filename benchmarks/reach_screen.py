@@ -72,7 +72,7 @@ def screen_face(face: Face, tools: Sequence[Tool], scene: ReachScene, rng: np.ra
     rows = rng.choice(len(cells), min(PROVEN_CELLS, len(cells)), replace=False)
     for number, tool in enumerate(tools):
         judge = Feasibility(face, tool, groups, scene.tolerance)
-        seen = seen_cells(cells, tool, axes, scene.tolerance.min_lead)
+        seen = seen_cells(cells, tool, axes, scene.tolerance)
         for a in range(min(PROVEN_AXES, len(axes))):
             some = rows[seen[a, rows]]
             start = time.process_time()

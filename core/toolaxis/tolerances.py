@@ -1,7 +1,7 @@
 """All tolerances and required clearances in one frozen place."""
 
 from dataclasses import dataclass, fields
-from math import isfinite, radians
+from math import degrees, isfinite, pi, radians
 from numbers import Real
 from typing import Any, TypeAlias
 
@@ -31,6 +31,9 @@ class Tolerance:
     min_lead : float
         Least angle between the axis of a cutter with a flat bottom and any normal of the face, rad: nearer than
         this the contact wanders over the flat bottom and its place is undefined.
+    least_lean : float
+        Least angle between the axis of a ball end, tapered ones too, and the normal at every contact, rad: at the tip
+        of a ball the cutting speed is zero.  0 allows all; cutters with a flat bottom keep `min_lead` in its place.
     trim : float
         Chord tolerance of trim loops, as a share of the face's diagonal; at most 0.0002 mm, however large the face.
 
@@ -47,12 +50,14 @@ class Tolerance:
     chord: float | None = None
     min_lead: float = radians(0.5)
     trim: float = 1e-5
+    least_lean: float = 0.0
 
     def __post_init__(self) -> None:
         _check_machining(self.gouge)
+        _check_lean(self.least_lean)
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is None:
+            if value is None or field.name == "least_lean":
                 continue
             number = isinstance(value, Real) and isfinite(value)
             if not number or value < 0 or (field.name in ("chord", "trim") and value == 0):
@@ -79,6 +84,16 @@ class Tolerance:
         _check_machining(given)
         return cls(gouge=float(given))
 
+    def least_angle(self, flat_radius: float) -> float:
+        """Least angle between the axis of a cutter and the normal at its contacts, rad.
+
+        Parameters
+        ----------
+        flat_radius : float
+            Radius of the cutter's flat bottom, mm; 0 for a ball end.
+        """
+        return self.min_lead if flat_radius > 0 else self.least_lean
+
     def chord_for(self, scallop: float) -> float:
         """Chord tolerance of passes: how far straight motions may leave them, mm.
 
@@ -100,6 +115,14 @@ class Tolerance:
 
 #: What calls take as a tolerance: a `Tolerance`, the machining tolerance in mm, or None for the defaults.
 ToleranceLike: TypeAlias = Tolerance | float | None
+
+
+def _check_lean(value: Any) -> None:
+    """Refuse what is no least lean, rad."""
+    number = isinstance(value, Real) and not isinstance(value, bool)
+    if not number or not 0 <= value < pi / 2:
+        shown = f"{degrees(value):g} deg" if number else repr(value)
+        raise InvalidInput(f"least lean is {shown}: it must be a number from 0 to below 90 deg; 5 to 15 deg are usual")
 
 
 def _check_machining(value: Any) -> None:

@@ -178,14 +178,15 @@ def test_many_axes_at_once_are_the_single_ones(make):
     assert np.isinf(ready.many(axes, "u").passes[:, 1]).all()
 
 
-def test_the_kernel_and_its_twin_agree(make):
-    ready = Estimator.of(make["holed"](make["wavy"](2)), TORUS, 0.02)
+@pytest.mark.parametrize("most", [np.inf, 0.6])
+def test_the_kernel_and_its_twin_agree(make, most):
+    ready = Estimator.of(make["holed"](make["wavy"](2)), TORUS, 0.02, greatest_step_over=most)
     axes = np.array([make["leaning"](a, b) for a, b in ((20, 0), (25, 90), (30, 200), (100, 0))])
     ratio = np.random.default_rng(0).uniform(0.9, 1.1, (4, len(ready.samples) + 60))
     for table in ready.rows:
         one = ready._sums(table, axes, ratio)
         two = np.empty(4), np.empty(4)
-        sum_rows_numpy(table, axes, ratio, ready.leans, (ready._cutter(), 0.02), *two)
+        sum_rows_numpy(table, axes, ratio, ready.leans, (ready._cutter(), 0.02, most), *two)
         assert np.allclose(one, two, rtol=1e-12)
 
 

@@ -19,6 +19,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.skin.find import find_skins
 from toolaxis.skin.join import join
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import COMPONENTS, Tool
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -46,7 +47,7 @@ def compare(part: Part, tools: list[Tool], faces: list[Face]) -> np.ndarray:
         groups = group_surroundings(face, scene.tolerance, part=part)
         for number, tool in enumerate(tools):
             judge = Feasibility(face, tool, groups, scene.tolerance)
-            seen = seen_cells(cells, tool, axes, scene.tolerance.min_lead)
+            seen = seen_cells(cells, tool, axes, scene.tolerance)
             assert not (free[number] & ~seen).any()
             for a, axis in enumerate(axes):
                 rows = drawn[seen[a, drawn]]
@@ -162,7 +163,7 @@ def test_dense_points_agree(scenes) -> None:
         for a, axis in enumerate(axes):
             x = unit(np.cross(axis, [1.0, 0, 0]))
             frame = np.stack([x, np.cross(axis, x), axis], axis=1)
-            for n in some[seen_cells(cells, tool, axes, scene.tolerance.min_lead)[a, some]]:
+            for n in some[seen_cells(cells, tool, axes, scene.tolerance)[a, some]]:
                 tip = tips(cells.point[n:n + 1], cells.normal[n:n + 1], axis, tool)
                 room = np.inf
                 for k, cloud in enumerate(clouds):
@@ -231,7 +232,7 @@ def test_all_normals_of_a_seen_cell_are_within_the_angles(scenes, number: int) -
     cells = FaceCells.of(face, 4.0)
     axes = unit(np.random.default_rng(2).normal(size=(400, 3)))
     lead = np.radians(0.5)
-    seen = seen_cells(cells, tool, axes, lead)
+    seen = seen_cells(cells, tool, axes, Tolerance(min_lead=lead))
     lines = Lattice(face, cells.shape).lines
     for n in np.random.default_rng(3).choice(len(cells), 20, replace=False):
         (i, j), share = cells.index[n], np.linspace(0, 1, 9)

@@ -5,8 +5,8 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from math import isfinite
+from dataclasses import asdict, dataclass, replace
+from math import isfinite, radians
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from toolaxis.batch.task import BatchTask, PartBytes
 from toolaxis.cad.load import load
 from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
-from toolaxis.job.inputs.spec import Spec, numbers_to_avoid
+from toolaxis.job.inputs.spec import Spec, numbers_to_avoid, parse_allowances
 from toolaxis.job.inputs.tool_library import GENERAL_RACK, load_library
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
@@ -30,16 +30,19 @@ from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
-_INPUTS = {"scallop": float, "allowance": float, "stock": float, "method": str, "objective": str, "direction": str,
+_INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_over": float,
+           "method": str, "objective": str, "direction": str,
            "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
-           "passes": str, "avoid": "avoided", "held": str}
+           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances"}
+#: What is written among the tolerances of a plan.
+_OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
 #: What tools have of their own, or goes by how many there are, unless a job says it.
 _OF_TOOL = ("objective", "feedrate", "spindle")
 #: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
-KEYS = ("name", "part", "tool", "tools", "machine", "obstacles", *_INPUTS, *_ASKED, *_OWN)
+KEYS = ("name", "part", "tool", "tools", "machine", "obstacles", *_INPUTS, *_OF_TOLERANCE, *_ASKED, *_OWN)
 _NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
 
 
@@ -169,8 +172,11 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     obstacles = row.get("obstacles", ())
     bodies = tuple(_body(body, folder) for body in
                    (row["part"], *(obstacles if isinstance(obstacles, list | tuple) else (obstacles,))))
-    values = {name: _value(name, row[name], kind) for name, kind in {**_INPUTS, **_ASKED, **_OWN}.items()
-              if name in row}
+    kinds = {**_INPUTS, **_OF_TOLERANCE, **_ASKED, **_OWN}
+    values = {name: _value(name, row[name], kind) for name, kind in kinds.items() if name in row}
+    if "least_lean" in values:
+        tolerance = values.get("tolerance", Tolerance())
+        values["tolerance"] = replace(tolerance, least_lean=radians(values["least_lean"]))
     if values.get("limits"):
         parse_limits(values["limits"])
     if "holder" in values:
@@ -190,7 +196,8 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
            **{name: values[name] for name in _OWN if name in values}, **{name: values.get(name) for name in _OF_TOOL}}
     chosen = check_strategy(own["strategy"], Asked(
         tools[0], machine, spec.inputs.method, spec.inputs.objective, _in_mm(own["roughness"]), spec.orientations,
-        passes=spec.inputs.passes))
+        passes=spec.inputs.passes, least_lean=spec.inputs.tolerance.least_lean,
+        greatest_step_over=spec.inputs.greatest_step_over))
     if len(tools) > 1:
         check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions is not None,
                                      spec.orientations is not None, compare=own["compare"]))
@@ -239,6 +246,8 @@ def _tools(named: Sequence[Any], of_library: bool, spec: Spec) -> tuple[Tool, ..
     found = load_library(list(named) or None).tools
     if len(found) == 1:
         spec.inputs.check_tool(found[0])
+    else:
+        spec.inputs.check_lean(found)
     return found
 
 
@@ -291,6 +300,8 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return value
     if kind == "avoided":
         return numbers_to_avoid(value)
+    if kind == "allowances":
+        return parse_allowances(value)
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

@@ -113,6 +113,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm (write --offset=-100,0,50 "
                           "for a negative one): no motion leaves the travel of the linear axes")
+    sub.add_argument("--least-lean", type=float, default=0.0, metavar="DEG",
+                     help="least angle between the axis of a ball end, tapered ones too, and the normal at every "
+                          "contact: at the tip of a ball the cutting speed is zero (default: 0, none is asked for; "
+                          "cutters with a flat bottom always keep half a degree)")
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
@@ -128,9 +132,15 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="what is least: cutting length, number of passes, or the time that --machine takes (default: "
                           "length; time with several tools on a machine that states the limits of its axes)")
     sub.add_argument("--allowance", type=float, default=0.0, metavar="MM", help="stock left on the faces")
+    sub.add_argument("--allowance-on", action="append", default=[], metavar="FACES=MM",
+                     help="stock left on some faces in place of --allowance, such as 3,5-8=0.3: they are machined to "
+                          "that height, and no tool goes deeper there on other faces; may be repeated")
     sub.add_argument("--stock", type=float, default=0.0, metavar="MM",
                      help="what roughing left on the faces of this plan, above the finished surface: shank, holder and "
                           "rapid moves stay clear of all of it (default: 0, no stock is looked out for)")
+    sub.add_argument("--greatest-step-over", type=float, default=0.0, metavar="MM",
+                     help="greatest distance of neighbouring passes on the face, whatever the scallop height allows "
+                          "(default: 0, none)")
     sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
     sub.add_argument("--passes", default=ISO, choices=PASSES,
                      help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "

@@ -2,6 +2,8 @@
 
 from argparse import Namespace
 from collections.abc import Callable
+from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 from toolaxis.cli.display import show_progress
@@ -9,7 +11,7 @@ from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
-from toolaxis.job.inputs.spec import Spec, parse_avoided
+from toolaxis.job.inputs.spec import Spec, parse_allowances, parse_avoided
 from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.limits import parse_limits
@@ -45,7 +47,8 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     one = tool if isinstance(tool, Tool) else None
     check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
                                          spec.inputs.objective, _roughness(given), given.orientations,
-                                         passes=given.passes))
+                                         passes=given.passes, least_lean=spec.inputs.tolerance.least_lean,
+                                         greatest_step_over=spec.inputs.greatest_step_over))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -61,7 +64,9 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         tolerance=spec.inputs.tolerance, regions=spec.regions, rapid=spec.inputs.rapid,
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
-                        most_tools=given.most_tools, progress=progress)
+                        most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
+                        allowance_on=spec.inputs.allowance_on,
+                        progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
                 raise Cancelled("cancelled by the user")
@@ -80,8 +85,10 @@ def _spec(given: Namespace) -> Spec:
     feedrate = FEEDRATE if given.feedrate is None else given.feedrate
     spindle = SPINDLE if given.spindle is None else given.spindle
     inputs = PlanInputs(given.scallop, given.allowance, given.method, given.objective or OBJECTIVES[0], given.direction,
-                        given.limits, feedrate, spindle, Tolerance.of(given.tolerance), given.rapid, limit=given.limit,
-                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock)
+                        given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
+                        passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock,
+                        greatest_step_over=given.greatest_step_over,
+                        allowance_on=parse_allowances(given.allowance_on))
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""
@@ -89,6 +96,11 @@ def _spec(given: Namespace) -> Spec:
                 tuple(given.obstacles), given.regions, given.orientations, given.machine or "", given.offset or "")
     _ = spec.numbers, spec.place
     return spec
+
+
+def _tolerance(given: Namespace) -> Tolerance:
+    """Tolerances, with the least lean of ball ends among them."""
+    return replace(Tolerance.of(given.tolerance), least_lean=radians(given.least_lean))
 
 
 def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:
@@ -105,6 +117,7 @@ def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:
     if len(found.tools) == 1:
         spec.inputs.check_tool(found.tools[0])
         return found.tools[0]
+    spec.inputs.check_lean(found.tools)
     return found.tools
 
 

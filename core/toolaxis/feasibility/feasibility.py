@@ -9,7 +9,7 @@ that continues the machined one, is left to a clean-up tool; anything else that 
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import pi
+from math import pi, radians
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,6 +44,8 @@ Bools = NDArray[np.bool_]
 
 #: An axis that leaves more than this share of the contacts to a clean-up tool is none.
 MOST_LEFT = 0.9
+#: How much more than the least lean a ball end keeps whose axis moves, rad.
+LEAN_MARGIN = radians(0.1)
 _DENSE = 32
 
 
@@ -88,8 +90,14 @@ class Feasibility:
 
     @property
     def least_angle(self) -> float:
-        """Least angle between axis and normal, rad: 0 unless the cutter has a flat bottom."""
-        return self.tolerance.min_lead if self.tool.flat_radius > 0 else 0.0
+        """Least angle between axis and normal, rad: 0 for a ball end of which no lean is asked for."""
+        return self.tolerance.least_angle(self.tool.flat_radius)
+
+    @property
+    def least_angle_in_motion(self) -> float:
+        """Least angle for an axis that moves, rad: that of a ball end is kept between the points of a pass too."""
+        leans = self.tool.flat_radius == 0 and self.least_angle > 0
+        return self.least_angle + LEAN_MARGIN if leans else self.least_angle
 
     def watching(self, uv: ArrayLike) -> "Feasibility":
         """The same with more contacts looked at in screening.

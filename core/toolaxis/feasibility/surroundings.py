@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.shape.allowances import SAME
 from toolaxis.shape.bounding.bounding_tree import BoundingTree, forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HELD_SIDE, HalfSpace
@@ -43,6 +44,8 @@ class CheckSurfaces:
         How far stock stands above the faces, mm: shank and holder keep their required distance with it.
     rapid : float
         Least distance of the cutter on links at rapid traverse, which cut no stock, mm; -inf without stock.
+    allowance : float
+        What is left on the faces on purpose where they have an allowance of their own, mm: all distances are to that.
     """
 
     role: str
@@ -52,6 +55,7 @@ class CheckSurfaces:
     held: HalfSpace | None = None
     stock: float = 0.0
     rapid: float = -np.inf
+    allowance: float = 0.0
 
     @property
     def required_on_links(self) -> Array:
@@ -101,6 +105,9 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
     Faces that carry the part's stock make groups of their own; a skin of which one face carries stock counts as
     carrying it everywhere.
 
+    Where faces of the part have allowances of their own, those on which more is left than on the face are walls,
+    however they meet it, and all distances are to what is left.
+
     Raises
     ------
     InvalidInput
@@ -119,6 +126,11 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
         others = [*part.faces_of_held_side, *others]
     own, touching, walls, further = (tuple(one for whole in some for one in whole.own_faces)
                                      for some in (own, touching, walls, others))
+    if part is not None and part.allowances is not None:
+        most = max(allowance, part.allowance_on(face))
+        own, higher = _by_allowance(own, part, most)
+        touching, highest = _by_allowance(touching, part, most)
+        walls = (*walls, *higher, *highest)
     edges = () if part is None else (part.original or part).edges
     touched = {one.number for one in own}
     (bare, rough), (finished, proud) = _by_stock(touching, part), _by_stock(walls, part)
@@ -127,14 +139,34 @@ def group_surroundings(face: Face, tolerance: Tolerance, allowance: float = 0.0,
     groups = [_group(SKIN, own, (allowance - tolerance.gouge, height), tolerance, mismatch_of(own, edges, touched,
                                                                                               allowance))]
     for some, stock in ((bare, 0.0), (rough, full)):
-        off = mismatch_of(some, edges, touched)
-        groups.append(_group(TOUCHING, some, (-tolerance.gouge, stock), tolerance, off))
-    for some, stock in (((*finished, *further), 0.0), (proud, full)):
-        groups.append(_group(OTHER, some, (tolerance.cutter_clearance, stock), tolerance))
+        for left, faces in _with_allowances(some, part).items():
+            off = mismatch_of(faces, edges, touched)
+            groups.append(_group(TOUCHING, faces, (left - tolerance.gouge, stock), tolerance, off, left))
+    bare_walls = _with_allowances(finished, part)
+    bare_walls[0.0] = (*bare_walls.get(0.0, ()), *further)
+    for kept, stock in ((bare_walls, 0.0), (_with_allowances(proud, part), full)):
+        for left, faces in kept.items():
+            groups.append(_group(OTHER, faces, (left + tolerance.cutter_clearance, stock), tolerance, left=left))
     if part is not None and part.held is not None:
-        groups = [replace(group, held=part.held) if group.role == OTHER and group.stock == 0.0 else group
-                  for group in groups]
+        groups = [replace(group, held=part.held) if group.role == OTHER and group.stock == group.allowance == 0.0
+                  else group for group in groups]
     return tuple(group for group in groups if group.faces)
+
+
+def _by_allowance(faces: tuple[Face, ...], part: Part, most: float) -> tuple[tuple[Face, ...], tuple[Face, ...]]:
+    """Faces of a part on which no more than so much is left, mm, and the others."""
+    higher = [part.allowance_on(face) > most + SAME for face in faces]
+    return (tuple(face for face, more in zip(faces, higher, strict=True) if not more),
+            tuple(face for face, more in zip(faces, higher, strict=True) if more))
+
+
+def _with_allowances(faces: tuple[Face, ...], part: Part | None) -> dict[float, tuple[Face, ...]]:
+    """Faces by what is left on them where they have allowances of their own, mm."""
+    if part is None or part.allowances is None:
+        return {0.0: faces}
+    left = [part.allowance_on(face) for face in faces]
+    return {value: tuple(face for face, own in zip(faces, left, strict=True) if own == value)
+            for value in sorted(set(left))}
 
 
 def _by_stock(faces: tuple[Face, ...], part: Part | None) -> tuple[tuple[Face, ...], tuple[Face, ...]]:
@@ -145,12 +177,13 @@ def _by_stock(faces: tuple[Face, ...], part: Part | None) -> tuple[tuple[Face, .
 
 
 def _group(role: str, faces: tuple[Face, ...], keeps: tuple[float, float], tolerance: Tolerance,
-           mismatch: Mismatch | None = None) -> CheckSurfaces:
-    """Faces with the cutter's least distance and the stock on them, mm."""
+           mismatch: Mismatch | None = None, left: float = 0.0) -> CheckSurfaces:
+    """Faces with the cutter's least distance, the stock on them, and what is left of that on purpose, mm."""
     cutter, stock = keeps
-    required = np.array([cutter, stock + tolerance.shank_clearance, stock + tolerance.holder_clearance])
+    above = max(stock, left)
+    required = np.array([cutter, above + tolerance.shank_clearance, above + tolerance.holder_clearance])
     rapid = stock + tolerance.cutter_clearance + MARGIN if stock > 0 else -np.inf
-    return CheckSurfaces(role, faces, required, mismatch, stock=stock, rapid=rapid)
+    return CheckSurfaces(role, faces, required, mismatch, stock=stock, rapid=rapid, allowance=left)
 
 
 def faces_of(obstacles: Obstacles) -> tuple[Face, ...]:

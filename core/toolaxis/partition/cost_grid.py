@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.contact.strip.second_order import contact_forms
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.feasibility.check_points import contacts_at
 from toolaxis.feasibility.feasibility import Feasibility
@@ -117,6 +118,9 @@ def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasi
         if len(axis):
             halves = step_widths(lattice.face, worth.tool, uv, axes[axis], worth.scallop, name, worth.allowance)
             width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0)
+            if np.isfinite(worth.greatest_step_over):
+                pace = contact_forms(lattice.face, uv, name, True)[:, 12]
+                width = np.minimum(width, worth.greatest_step_over / np.maximum(pace, 1e-12))
             rates[axis, feed, nodes[node]] = 1 / np.maximum(width, 1 / FORBIDDEN)
     shape = lattice.material.shape
     everywhere = np.zeros((len(axes), lattice.material.size), dtype=bool)

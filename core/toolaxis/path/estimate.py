@@ -64,6 +64,8 @@ class Estimator:
     tool : Tool
     scallop, allowance : float
         mm
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm; infinite for none.
     samples : Samples
     rows : pair
         Geometry along some passes, for feed u and v.
@@ -78,6 +80,7 @@ class Estimator:
     tool: Tool
     scallop: float
     allowance: float
+    greatest_step_over: float
     samples: Samples
     rows: tuple[_SampledPasses, _SampledPasses]
     ends: tuple[Array, Array]
@@ -85,7 +88,7 @@ class Estimator:
 
     @staticmethod
     def of(face: Face, tool: Tool, scallop: float, allowance: float = 0.0,
-           samples: Samples | None = None) -> "Estimator":
+           samples: Samples | None = None, greatest_step_over: float = np.inf) -> "Estimator":
         """Prepare a face.
 
         Parameters
@@ -96,11 +99,13 @@ class Estimator:
             mm
         samples : Samples, optional
             Sample points; those of `sample_points` with its defaults unless given.
+        greatest_step_over : float
+            mm
         """
         screening_cutter(tool, scallop, allowance)
         chosen = samples or sample_points(face, tool)
         (rows_u, ends_u), (rows_v, ends_v) = (_prepare(face, feed, chosen) for feed in _FEEDS)
-        return Estimator(face, tool, scallop, allowance, chosen, (rows_u, rows_v), (ends_u, ends_v),
+        return Estimator(face, tool, scallop, allowance, greatest_step_over, chosen, (rows_u, rows_v), (ends_u, ends_v),
                          lean_table(tool, scallop))
 
     def many(self, axes: ArrayLike, feeds: str = "uv", exact: bool = True) -> Estimates:
@@ -150,7 +155,7 @@ class Estimator:
         passes, length = np.empty(len(axes)), np.empty(len(axes))
         kernel = _sum_rows if _compiled.available else sum_rows_numpy
         kernel(table, np.ascontiguousarray(axes), np.ascontiguousarray(ratio), self.leans,
-               (self._cutter(), self.scallop), passes, length)
+               (self._cutter(), self.scallop, self.greatest_step_over), passes, length)
         return passes, length
 
     def _cutter(self) -> CutterParameters:
@@ -276,11 +281,12 @@ def _square(form: Array, axis: Array, cutter: CutterParameters, leans: Array) ->
 
 
 @jit
-def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, sizes: tuple[CutterParameters, float],
-              passes: Array, length: Array) -> None:
+def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array,
+              sizes: tuple[CutterParameters, float, float], passes: Array, length: Array) -> None:
     """Passes and length of each axis: sums over rows of weight over the narrowest strip."""
     forms, points, start, joined, weight, owner = table
-    cutter, scallop = sizes
+    cutter, scallop, greatest = sizes
+    widest = greatest * greatest / (8.0 * scallop)
     here, last = np.empty(3), np.empty(3)
     for i in range(axes.shape[0]):
         total = path = 0.0
@@ -288,6 +294,7 @@ def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, si
             least, run, q0, q1 = np.inf, 0.0, 0.0, 0.0
             for j in range(start[row], start[row + 1]):
                 q2 = _square(forms[j], axes[i], cutter, leans) * ratio[i, owner[j]] ** 2
+                q2 = min(q2, widest / max(forms[j, 12] ** 2, 1e-300))
                 least = min(least, q2)
                 if joined[j]:
                     bend = q2 - 2.0 * q1 + q0
@@ -307,7 +314,7 @@ def _sum_rows(table: _SampledPasses, axes: Array, ratio: Array, leans: Array, si
 
 
 def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Array,
-                   sizes: tuple[CutterParameters, float], passes: Array, length: Array) -> None:
+                   sizes: tuple[CutterParameters, float, float], passes: Array, length: Array) -> None:
     """The plain twin of the summing kernel, written on whole arrays.
 
     Parameters
@@ -320,18 +327,19 @@ def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Arra
         Exact over second-order width corrected for the lean.
     leans : array
         See `lean_table`.
-    sizes : (cutter, scallop)
+    sizes : (cutter, scallop, greatest step-over)
     passes, length : (k,) array
         Receive the sums.
     """
     forms, points, start, joined, weight, owner = table
-    cutter, scallop = sizes
+    cutter, scallop, greatest = sizes
     full = np.flatnonzero(np.diff(start) > 0)
     normal = forms[:, 6:9]
     for i, axis in enumerate(axes):
         half = np.empty((1, len(forms)))
         screen_numpy(forms, axis[None], cutter, scallop, half)
         width = 2 * half[0] * ratio[i, owner] * lean_ratios(leans, forms[:, :3] @ axis, forms[:, 3:6] @ axis)
+        width = np.minimum(width, greatest / np.maximum(forms[:, 12], 1e-300))
         width = np.sqrt(np.minimum.reduceat(_with_vertices(width**2, joined), start[full]))
         nt = normal @ axis
         across = np.sqrt(np.maximum(1 - nt**2, 0.0))

@@ -54,17 +54,20 @@ class Cut:
         Scallop height, mm.
     allowance : float
         Stock left on the surface, mm.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm, whatever the scallop height allows; infinite for none.
 
     Raises
     ------
     InvalidInput
-        When the axis is no single direction, or scallop or allowance are out of range.
+        When the axis is no single direction, or scallop, allowance or step-over are out of range.
     """
 
     tool: Tool
     axis: Array
     scallop: float
     allowance: float = 0.0
+    greatest_step_over: float = np.inf
 
     def __post_init__(self) -> None:
         rows = as_rows(self.axis, 3, "axis")
@@ -77,6 +80,8 @@ class Cut:
         if not (np.isfinite(self.allowance) and self.allowance >= -self.tool.corner_radius):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be finite and not below minus the corner "
                                f"radius {self.tool.corner_radius} mm")
+        if not self.greatest_step_over > 0:
+            raise InvalidInput(f"greatest step-over is {self.greatest_step_over} mm: it must be above zero")
 
     def axes(self, face: Face, uv: Array) -> Array:
         """The axis at contacts, (3,) or (n, 3) unit vectors: one for all of them here.

@@ -136,7 +136,7 @@ class FieldPasses:
     @cached_property
     def _forms(self) -> DirectionForms:
         own = self.estimator
-        return DirectionForms.of(own.face, own.tool, own.scallop, own.allowance)
+        return DirectionForms.of(own.face, own.tool, own.scallop, own.allowance, own.greatest_step_over)
 
     def screen(self, axes: Array) -> Estimates:
         """Ideal number and length of the passes with axes (k, 3), the same for both feeds."""

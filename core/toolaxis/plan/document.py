@@ -196,7 +196,8 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned]},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
-        "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid)},
+        "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid),
+                   "allowance_on": [list(pair) for pair in plan.inputs.allowance_on]},
         "datum": _rows(plan.datum),
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
@@ -273,8 +274,11 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
     check(document)
     given = dict(document["inputs"])
     inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"]),
-                           "avoid": tuple(given.get("avoid", ()))})
+                           "avoid": tuple(given.get("avoid", ())),
+                           "allowance_on": tuple((int(number), float(value))
+                                                 for number, value in given.get("allowance_on", ()))})
     part = part.avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
+    part = part.leave_allowances(inputs.allowance, dict(inputs.allowance_on))
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     tools = tuple(tool_from(one) for one in document["tools"])

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 OUTCOMES = ("optimal", "feasible", "infeasible", "not_found", "failed", "cancelled")
 
 #: Why an axis is forbidden, in the order in which it is found out; code 0 is an axis that may be used.
-REASONS = ("free", "limits", "back of the surface", "contact wanders over the flat bottom", "gouge",
+REASONS = ("free", "limits", "back of the surface", "too near to a normal", "gouge",
            "cutter collides", "shank collides", "holder collides")
 
 

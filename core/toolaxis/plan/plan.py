@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import degrees, inf, isfinite, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.timing import Order
 from toolaxis.plan.unplanned_area import UnplannedArea
 from toolaxis.plugins import one_of
+from toolaxis.shape.allowances import Allowances
+from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
 from toolaxis.shape.stock import MOST_STOCK
@@ -80,6 +82,11 @@ class PlanInputs:
         The side that is held in the clamping, in the short form of the command; empty for none.
     stock : float
         What roughing left on the finished faces, mm; 0 where they are taken as finished.  `Part.stock` says on which.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm, whatever the scallop height allows; 0 for none.
+    allowance_on : tuple of (int, float)
+        Faces on which an allowance of their own is left, in place of `allowance`, with that, mm; by numbers of the
+        file's faces.
 
     Raises
     ------
@@ -103,6 +110,8 @@ class PlanInputs:
     avoid: tuple[int, ...] = ()
     held: str = ""
     stock: float = 0.0
+    greatest_step_over: float = 0.0
+    allowance_on: tuple[tuple[int, float], ...] = ()
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -112,7 +121,9 @@ class PlanInputs:
                 raise InvalidInput(f"{name} is {value} {unit}: it must be a finite number above zero")
         if not (isfinite(self.allowance) and self.allowance >= 0):
             raise InvalidInput(f"allowance is {self.allowance} mm: it must be zero or more")
+        Allowances(self.allowance, dict(self.allowance_on))
         self._check_stock()
+        self._check_step_over()
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):
@@ -128,9 +139,28 @@ class PlanInputs:
     def _check_stock(self) -> None:
         if not (isfinite(self.stock) and 0 <= self.stock <= MOST_STOCK):
             raise InvalidInput(f"stock is {self.stock} mm: it must be zero or more, and at most {MOST_STOCK:g} mm")
-        if 0 < self.stock < self.allowance:
-            raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {self.allowance} mm: give at least "
+        most = max([self.allowance, *(value for _, value in self.allowance_on)])
+        if 0 < self.stock < most:
+            raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {most} mm: give at least "
                                "the allowance, or 0 where no stock is to be looked out for")
+
+    def allowance_of(self, face: Face) -> float:
+        """What is left on a face, mm.
+
+        Parameters
+        ----------
+        face : Face
+            Of the part; on all faces of a joined one the same is left.
+        """
+        return Allowances(self.allowance, dict(self.allowance_on)).of(face)
+
+    def _check_step_over(self) -> None:
+        most = self.greatest_step_over
+        if not (isfinite(most) and most >= 0):
+            raise InvalidInput(f"greatest step-over is {most} mm: it must be finite and above zero, or 0 for none")
+        if 0 < most < self.scallop:
+            raise InvalidInput(f"greatest step-over is {most} mm, below the scallop height of {self.scallop} mm: give "
+                               "a larger step-over, or a smaller scallop height")
 
     @property
     def half_space_held(self) -> HalfSpace | None:
@@ -142,6 +172,11 @@ class PlanInputs:
             When its short form is not understood.
         """
         return parse_half_space(self.held) if self.held else None
+
+    @property
+    def step_over(self) -> float:
+        """Greatest distance of neighbouring passes, mm; infinite where none is asked for."""
+        return self.greatest_step_over or inf
 
     @property
     def chord(self) -> float:
@@ -157,8 +192,50 @@ class PlanInputs:
         """
         return replace(self, feedrate=tool.feedrate or self.feedrate, spindle=tool.spindle or self.spindle)
 
+    def check_rack(self, tools: Sequence[Tool]) -> None:
+        """Check several tools to choose from.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+            The largest first.
+
+        Raises
+        ------
+        InvalidInput
+            As `check_tool` and `check_lean` say.
+        """
+        self._check_scallop(tools[0])
+        self.check_lean(tools)
+
+    def check_lean(self, tools: Sequence[Tool]) -> None:
+        """Check that the least lean is one that the ball ends among tools can keep.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+
+        Raises
+        ------
+        InvalidInput
+            When none of them has a ball end, or the lean is more than its sides allow.
+        """
+        lean = self.tolerance.least_lean
+        if lean == 0:
+            return
+        balls = [tool for tool in tools if tool.flat_radius == 0]
+        if not balls:
+            names = ", ".join(tool.name for tool in tools)
+            raise InvalidInput(f"least lean is {degrees(lean):g} deg and no ball end is among the tools ({names}): "
+                               "leave the lean out, or name a tool with a ball end, tapered or not")
+        for tool in balls:
+            most = pi / 2 - tool.half_angle
+            if lean >= most:
+                raise InvalidInput(f"least lean is {degrees(lean):g} deg and tool {tool.name} reaches "
+                                   f"{degrees(most):g} deg from its axis at most: give a smaller least lean")
+
     def check_tool(self, tool: Tool) -> None:
-        """Check that the scallop is one that this cutter can leave.
+        """Check that the scallop is one that this cutter can leave, and that it can keep the least lean.
 
         Parameters
         ----------
@@ -167,8 +244,13 @@ class PlanInputs:
         Raises
         ------
         InvalidInput
-            When it is no tool, or the scallop height is not below the cutter's radius.
+            When it is no tool, the scallop height is not below the cutter's radius, or the least lean does not go
+            with it.
         """
+        self._check_scallop(tool)
+        self.check_lean((tool,))
+
+    def _check_scallop(self, tool: Tool) -> None:
         if not isinstance(tool, Tool):
             raise InvalidInput(f"tool is {tool!r}: give a Tool, its short form (torus:12x1), a file or a name")
         if self.scallop >= tool.radius:

@@ -138,6 +138,13 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
     if stock is not None:
         rows.insert(4, ["stock left by roughing", f"at most {stock.height:g} mm above {format_faces(stock.faces)}, "
                         "none on all other faces: measure before the start"])
+    if program.plan.part.allowances is not None:
+        rows.insert(4, ["allowance", program.plan.part.allowances.described])
+    lean = program.inputs.tolerance.least_lean
+    if lean > 0:
+        rows.insert(4, ["least lean of ball ends", f"{degrees(lean):g} deg from the normal at every contact"])
+    if program.inputs.greatest_step_over > 0:
+        rows.insert(4, ["greatest step-over", f"{program.inputs.greatest_step_over:g} mm"])
     patterns = {op.orientation.pattern for op in program.plan.operations if op.done} - {ISO}
     if patterns:
         rows.insert(4, ["passes", ", ".join(_PATTERNS[name] for name in sorted(patterns))])

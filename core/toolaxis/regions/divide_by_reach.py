@@ -199,7 +199,7 @@ class _Reach:
         cells, before = self.cells, len(self.axes)
         free = screen_reach(cells, [self.tool], axes, self.scene)[0]
         free &= fits_hollows(cells, self.tool, axes, self.scallop, self.scene.allowance)
-        seen = seen_cells(cells, self.tool, axes, self.scene.tolerance.min_lead)
+        seen = seen_cells(cells, self.tool, axes, self.scene.tolerance)
         angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
         roomy = angle <= np.pi / 2 - self.tool.half_angle - _ROOM
         reached = free & roomy

@@ -390,8 +390,7 @@ class _Proof:
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         slack = cells.turn[pairs.cell] + radius
         found = angle - slack <= np.pi / 2 - tool.half_angle
-        if tool.flat_radius > 0:
-            found &= angle + slack >= self._scene.tolerance.min_lead
+        found &= angle + slack >= self._scene.tolerance.least_angle(tool.flat_radius)
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & (limits.excess(axes) <= radius))
 
@@ -399,8 +398,7 @@ class _Proof:
         """Whether the axes themselves touch the contacts."""
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         found = angle <= np.pi / 2 - self._tool.half_angle
-        if self._tool.flat_radius > 0:
-            found &= angle >= self._scene.tolerance.min_lead
+        found &= angle >= self._scene.tolerance.least_angle(self._tool.flat_radius)
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
 

@@ -22,7 +22,8 @@ Bools = NDArray[np.bool_]
 _TOGETHER = 64
 
 
-def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: float, allowance: float = 0.0) -> Array:
+def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: float, allowance: float = 0.0,
+           greatest_step_over: float = np.inf) -> Array:
     """Strip widths at the contacts of cells in the feed direction that has the widest, mm.
 
     Parameters
@@ -31,8 +32,8 @@ def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: fl
     tools : sequence of Tool
     axes : (k, 3) array_like
         Tool axes, tip to spindle.
-    scallop, allowance : float
-        mm
+    scallop, allowance, greatest_step_over : float
+        mm; no strip is wider than the last.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: fl
         for first in range(0, len(rows), _TOGETHER):
             some = slice(first, first + _TOGETHER)
             found[number, some] = _widest(forms, tool, rows[some], (scallop, allowance))
-    return found
+    return np.minimum(found, greatest_step_over)
 
 
 def fits_hollows(cells: FaceCells, tool: Tool, axes: ArrayLike, scallop: float, allowance: float = 0.0) -> Bools:

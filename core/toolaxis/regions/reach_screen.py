@@ -15,6 +15,7 @@ from toolaxis.progress import breathe
 from toolaxis.regions.cells import FaceCells
 from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
 from toolaxis.regions.scene import ReachScene
+from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -66,13 +67,13 @@ def screen_reach(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scene
         radius = tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
         if radius not in corners:
             corners[radius] = _corner_fits(cells, radius, scene, required)
-        seen = seen_cells(cells, tool, rows, scene.tolerance.min_lead) & corners[radius] & allowed[:, None]
+        seen = seen_cells(cells, tool, rows, scene.tolerance) & corners[radius] & allowed[:, None]
         axis, cell = _side_by_side(cells, seen)
         found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, required))
     return found
 
 
-def seen_cells(cells: FaceCells, tool: Tool, axes: Array, min_lead: float) -> Bools:
+def seen_cells(cells: FaceCells, tool: Tool, axes: Array, tolerance: Tolerance) -> Bools:
     """Which cells each axis may touch with a cutter, by the angles to their normals alone, (k, n).
 
     Parameters
@@ -81,13 +82,14 @@ def seen_cells(cells: FaceCells, tool: Tool, axes: Array, min_lead: float) -> Bo
     tool : Tool
     axes : (k, 3) array
         Unit vectors.
-    min_lead : float
-        Least angle of a flat bottom to any normal, rad.
+    tolerance : Tolerance
+        With the least angles between axis and normals.
     """
     angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
     seen = angle <= pi / 2 - tool.half_angle - cells.spread
-    if tool.flat_radius > 0:
-        seen &= angle >= min_lead + cells.spread
+    least = tolerance.least_angle(tool.flat_radius)
+    if tool.flat_radius > 0 or least > 0:
+        seen &= angle >= least + cells.spread
     return np.asarray(seen)
 
 

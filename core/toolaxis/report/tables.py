@@ -1,7 +1,7 @@
 """Tables for the terminal: the faces of a part, the operations of a plan, the verdict."""
 
 from collections.abc import Mapping, Sequence
-from math import inf, isfinite
+from math import degrees, inf, isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -121,8 +121,42 @@ def plan_table(plan: Plan) -> Table:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
     aside = (describe_not_begun(plan), describe_hidden(plan), describe_held(plan))
-    notes = (_of_part(plan), *aside, _BOUNDS, stock_line(plan), _ideal(plan), points, reckoning(plan), _order(plan))
+    asked = (allowance_line(plan), step_over_line(plan), lean_line(plan), stock_line(plan))
+    notes = (_of_part(plan), *aside, _BOUNDS, *asked, _ideal(plan), points, reckoning(plan), _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
+
+
+def allowance_line(plan: Plan) -> str:
+    """What is left on which faces, as a sentence; empty where it is the same on all of them.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    kept = plan.part.allowances
+    return "" if kept is None else f"left on purpose: {kept.described}"
+
+
+def lean_line(plan: Plan) -> str:
+    """How far ball ends lean at least, as a sentence; empty where that is not asked for.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    lean = plan.inputs.tolerance.least_lean
+    return f"ball ends lean {degrees(lean):g} deg at least from the normal at every contact" if lean > 0 else ""
+
+
+def step_over_line(plan: Plan) -> str:
+    """How far passes lie apart at most, as a sentence; empty where the scallop height alone decides.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    most = plan.inputs.greatest_step_over
+    return f"passes lie {most:g} mm apart at most, whatever the scallop height allows" if most > 0 else ""
 
 
 def stock_line(plan: Plan) -> str:

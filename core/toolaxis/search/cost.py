@@ -54,6 +54,8 @@ class MachiningCost:
         The only feed that may be chosen, where one is asked for.
     passes : str
         One of `toolaxis.plan.choices.PASSES`.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm; infinite for none.
 
     Raises
     ------
@@ -69,6 +71,7 @@ class MachiningCost:
     pace: TimeEstimate | None = None
     feed: str | None = None
     passes: str = ISO
+    greatest_step_over: float = np.inf
     _of_ball: dict[tuple[str, str], Count] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -76,7 +79,7 @@ class MachiningCost:
             raise InvalidInput("objective 'time' needs a machine with known limits and a feed: give both")
         if self.objective not in OBJECTIVES:
             raise InvalidInput(f"objective is {self.objective!r}: it must be one of {', '.join(OBJECTIVES)}")
-        Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance)
+        Cut(self.tool, np.array([0.0, 0.0, 1.0]), self.scallop, self.allowance, self.greatest_step_over)
 
     @property
     def timed(self) -> TimeEstimate | None:
@@ -86,7 +89,8 @@ class MachiningCost:
     @cached_property
     def estimator(self) -> Estimator:
         """The face made ready for estimates with many axes."""
-        return Estimator.of(self.face, self.tool, self.scallop, self.allowance)
+        return Estimator.of(self.face, self.tool, self.scallop, self.allowance,
+                            greatest_step_over=self.greatest_step_over)
 
     @cached_property
     def patterns(self) -> tuple[PassPattern, ...]:
@@ -100,7 +104,7 @@ class MachiningCost:
         ----------
         axis : (3,) array
         """
-        made = Cut(self.tool, axis, self.scallop, self.allowance)
+        made = Cut(self.tool, axis, self.scallop, self.allowance, self.greatest_step_over)
         made.__dict__["leans"] = self.estimator.leans
         return made
 

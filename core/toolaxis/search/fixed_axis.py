@@ -293,12 +293,14 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
          direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
-         progress: Progress = NO_PROGRESS) -> FaceProblem:
+         greatest_step_over: float = np.inf, progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
     face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, passes, feeds
+        As for `best_axis`.
+    greatest_step_over : float
         As for `best_axis`.
     limits : AxisLimits, optional
     progress : Progress
@@ -310,7 +312,8 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     """
     given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
-    worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes)
+    worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes,
+                          greatest_step_over=greatest_step_over)
     chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
@@ -328,7 +331,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
               passes: str = ISO, starts: ArrayLike | None = None, feeds: Feeds | None = None,
-              progress: Progress = NO_PROGRESS) -> Orientation:
+              greatest_step_over: float = np.inf, progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
 
     Parameters
@@ -369,6 +372,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional
         What is programmed; for the objective "time", which also needs a machine that states its limits.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows.
     progress : Progress
 
     Returns
@@ -393,7 +398,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
                skin=skin, surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
-               passes=passes, feeds=feeds, progress=progress)
+               passes=passes, feeds=feeds, greatest_step_over=greatest_step_over, progress=progress)
     return find_axis(job, method, starts)[0]
 
 

@@ -38,6 +38,8 @@ _PASSED = {LIMITS: "", BACK: " inside the limits", WANDERS: " that see all of th
 COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal for the flat bottom",
            "with a gouge", "with a collision of the cutter", "with a collision of the shank",
            "with a collision of the holder")
+#: The same of a ball end, which has no flat bottom.
+LEANS_TOO_LITTLE = "too near to a normal for the least lean"
 
 #: How sentences end, or begin, that tell what an operation leaves.
 LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
@@ -156,6 +158,8 @@ def _angle(found: Violation, feasibility: Feasibility) -> str:
         return f"the axis is {angle} deg from {of}, and the cutter reaches {limit} deg at most"
     least = degrees(feasibility.least_angle)
     angle, limit = format_apart(max(least - degrees(abs(found.amount)), 0.0), least, 2)
+    if feasibility.tool.flat_radius == 0:
+        return f"the axis is only {angle} deg from {of}: the least lean of a ball end is {limit} deg"
     return f"the axis is only {angle} deg from {of}: a flat bottom needs a lead of {limit} deg"
 
 
@@ -180,7 +184,11 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     which = f"face {found.label}" if found.label else "what stands around"
     if found.label == HELD_SIDE:
         which = "the held side"
-    stock = 0.0 if found.reason == CUTTER else _stock_on(found, feasibility)
+    left = _left_on(found, feasibility)
+    if left > 0:
+        needed += left
+        which = f"face {found.label} ({left:g} mm are left on it)"
+    stock = 0.0 if found.reason == CUTTER else _stock_on(found, feasibility) - left
     if stock > 0:
         needed += stock
         which = f"face {found.label} (finished; {stock:g} mm of stock on it)"
@@ -202,6 +210,12 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
         return (f"the {name} comes within {near} mm of {which}{_at(found)}; {needed:g} mm is required, and {MARGIN:g} "
                 "mm more to be sure")
     return f"the {name} is not proven to stay {needed:g} mm clear of {which}{_at(found)}"
+
+
+def _left_on(found: Violation, feasibility: Feasibility) -> float:
+    """What is left on purpose on the face that a witness names, mm."""
+    return max((group.allowance for group in feasibility.groups for face in group.faces if face.label == found.label),
+               default=0.0)
 
 
 def _stock_on(found: Violation, feasibility: Feasibility) -> float:
@@ -254,7 +268,10 @@ def tally(ledger: AxisTable) -> str:
     ledger : AxisTable
     """
     counts = np.bincount(ledger.reason, minlength=len(REASONS))
-    parts = [f"{counts[k]} {COUNTED[k]}" for k in range(1, len(REASONS)) if counts[k]]
+    words = list(COUNTED)
+    if ledger.feasibility.tool.flat_radius == 0:
+        words[WANDERS] = LEANS_TOO_LITTLE
+    parts = [f"{counts[k]} {words[k]}" for k in range(1, len(REASONS)) if counts[k]]
     return f"{len(ledger.axes)} axes tested: " + (", ".join(parts) if parts else "none was refused")
 
 

@@ -1,6 +1,6 @@
 """A part: faces, the edges between them, and the bodies they bound."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.adjacency import Edge, edges_from_borders
+from toolaxis.shape.allowances import Allowances
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace
 from toolaxis.shape.joining.edge_matching import match_edges, sides_of
@@ -71,6 +72,8 @@ class Part:
         The side that is held in the clamping: nothing of a tool may go there.
     stock : Stock or None
         What roughing left on its faces; None where they are taken as finished.
+    allowances : Allowances or None
+        What is left on faces on purpose, where that is not the same for all of them.
 
     Raises
     ------
@@ -90,6 +93,7 @@ class Part:
     avoided: tuple[int, ...] = ()
     held: HalfSpace | None = None
     stock: Stock | None = None
+    allowances: Allowances | None = None
 
     def __post_init__(self) -> None:
         if not self.faces:
@@ -303,6 +307,44 @@ class Part:
         """
         carries = self.stock is not None and not self.stock.faces.isdisjoint(face.numbers)
         return self.stock.height if self.stock is not None and carries else 0.0
+
+    def leave_allowances(self, on_others: float, on: Mapping[int, float]) -> "Part":
+        """The part with faces on which an allowance of their own is left.
+
+        Parameters
+        ----------
+        on_others : float
+            What is left on all other faces, mm.
+        on : mapping of int to float
+            By numbers of faces, mm; where there are none, nothing is kept of either.
+
+        Raises
+        ------
+        InvalidInput
+            When the part has no such face, or one is to be avoided too.
+        """
+        if not on:
+            return self
+        there = {number for face in self.faces for number in face.numbers}
+        missing = sorted(set(on) - there)
+        if missing:
+            raise InvalidInput(f"face {missing[0]} is to keep an allowance and is not in the part: see toolaxis "
+                               "inspect for the part's faces")
+        avoided = sorted(set(on) & set((self.original or self).avoided))
+        if avoided:
+            raise InvalidInput(f"face {avoided[0]} is to keep an allowance and to be avoided: leave out one of both")
+        kept = Allowances(on_others, dict(on))
+        return replace(self, allowances=kept,
+                       original=None if self.original is None else replace(self.original, allowances=kept))
+
+    def allowance_on(self, face: Face) -> float:
+        """What is left on a face of the part on purpose, mm; 0 where no face has an allowance of its own.
+
+        Parameters
+        ----------
+        face : Face
+        """
+        return 0.0 if self.allowances is None else self.allowances.of(face)
 
     def transformed(self, matrix: ArrayLike) -> "Part":
         """The part moved by an affine map.

@@ -67,7 +67,8 @@ def find_skins(part: Part, width: float = 0.0) -> Skins:
     """
     open_ = {face.number: face for face in part.faces if not face.members and face.number not in part.avoided
              and (face.kind not in PLAIN_KINDS or mean_width(face) < width)}
-    beside = neighbours_of(part, open_)
+    beside = {n: [m for m in others if part.allowance_on(open_[m]) == part.allowance_on(open_[n])]
+              for n, others in neighbours_of(part, open_).items()}
     order = sorted(open_, key=lambda n: (-open_[n].area, n))
     skins: list[Face] = []
     refused: list[str] = []
@@ -94,6 +95,8 @@ def _rectangles(part: Part, free: list[int]) -> list[Face]:
     for edge in part.edges:
         a, b = edge.faces
         if edge.kind != "tangent" or a == b or not {a, b} <= set(free):
+            continue
+        if part.allowance_on(part.face(a)) != part.allowance_on(part.face(b)):
             continue
         with suppress(UnsupportedGeometry):
             meeting = meeting_along(part.face(a), part.face(b), edge)

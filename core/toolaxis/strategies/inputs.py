@@ -74,6 +74,12 @@ def _check_moving(strategy: Strategy, asked: Asked) -> None:
     if asked.orientations is not None:
         raise InvalidInput(f"strategy {name!r} moves the axis, so there are no shared axes to count: leave out the "
                            "number of orientations")
+    if asked.greatest_step_over > 0 and strategy.own_spacing:
+        raise InvalidInput(f"strategy {name!r} lays its passes by a rule of its own, without a greatest step-over: "
+                           "leave out the step-over, or use fixed axes, 'sturz' or 'four-plus-one'")
+    if asked.least_lean > 0 and strategy.in_layers:
+        raise InvalidInput(f"strategy {name!r} swings the axis about the ball's centre and keeps no least lean: leave "
+                           "out the least lean, or use fixed axes")
     if asked.held:
         raise InvalidInput(f"strategy {name!r} moves the axis, but {asked.held}: remove the lock, or use fixed axes")
 

@@ -52,6 +52,10 @@ class Asked:
         How a machine is given where a strategy misses one.
     passes : str
         One of `toolaxis.plan.choices.PASSES`.
+    least_lean : float
+        Least angle between the axis of a ball end and the normal at its contacts, rad; 0 for none.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes, mm; 0 for none.
     """
 
     tool: "Tool | None"
@@ -63,6 +67,8 @@ class Asked:
     held: str = ""
     remedy: str = "name a machine"
     passes: str = ISO
+    least_lean: float = 0.0
+    greatest_step_over: float = 0.0
 
 
 class Strategy(Protocol):
@@ -94,6 +100,8 @@ class Strategy(Protocol):
         Whether the cutter on the machined face is checked at points only.
     compared : bool
         Whether a comparison of methods takes it too, where the machine drives the axes.
+    own_spacing : bool
+        Whether it lays passes by a rule of its own, which knows of no greatest step-over.
     promise : str
         How the reason begins that tells that it did what it is there for; empty where all its passes do.
     """
@@ -109,6 +117,7 @@ class Strategy(Protocol):
     in_layers: bool = False
     at_points: bool = False
     compared: bool = False
+    own_spacing: bool = False
     promise: str = ""
 
     @property

@@ -72,6 +72,10 @@ class VerificationTask:
         cutter on links.  Nothing of it counts as removed by operations before or by this one.
     proud : tuple of Face
         The part's own faces that carry it.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes on the targets, mm; 0 where none is asked for.
+    left_on : tuple of (Face, float)
+        The part's own faces that keep an allowance, with that, mm, without the targets: no motion goes deeper.
     """
 
     name: str
@@ -98,6 +102,8 @@ class VerificationTask:
     held: HeldSide | None = None
     stock: float = 0.0
     proud: tuple[Face, ...] = ()
+    greatest_step_over: float = 0.0
+    left_on: tuple[tuple[Face, float], ...] = ()
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):

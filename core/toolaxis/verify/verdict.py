@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import degrees
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +14,15 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.verify.axis_limits import machine_faults
 from toolaxis.verify.component_clearance import FAR, Clearance, clearance
+from toolaxis.verify.contact_leans import UNCERTAINTY, ContactLean, least_lean
 from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.held_side import distance_to_held_side
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
 from toolaxis.verify.material_removal import Removal, RestMaterial
+from toolaxis.verify.pass_distances import FACTOR as STEP_OVER_FACTOR
+from toolaxis.verify.pass_distances import MeasuredFace, PassDistance, greatest_distance
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.task import VerificationTask, motion_of, spot
@@ -83,6 +87,12 @@ class OperationVerdict:
         How far stock stands above the finished faces that carry it, mm.
     from_stock : dict of str to Clearance
         Distances from those finished faces: of "shank" and "holder", and of the cutter on links, `AT_RAPID`.
+    lean : ContactLean, optional
+        Where a ball end leans least from the normal at its contact; None where no lean is asked for, the cutter is no
+        ball end, or it touches nothing.
+    step_over : PassDistance, optional
+        Where neighbouring passes lie farthest apart; None where no greatest step-over is asked for, or they lie nowhere
+        near as far apart.
     """
 
     name: str
@@ -108,6 +118,8 @@ class OperationVerdict:
     maps: tuple[SurfaceMap, ...]
     stock: float = 0.0
     from_stock: dict[str, Clearance] = field(default_factory=dict)
+    lean: ContactLean | None = None
+    step_over: PassDistance | None = None
 
     @property
     def measured(self) -> bool:
@@ -342,9 +354,12 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
-    failures = [*_axis_reasons(task), *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
+    lean, step_over = _find_lean(task), _find_step_over(task, targets)
+    failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_step_over_reasons(task, step_over),
+                *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
-                *_reasons_of_held_side(task), *_stock_reasons(task, measured.from_stock), *_machine_reasons(task)]
+                *_reasons_of_held_side(task), *_reasons_of_allowances(task), *_stock_reasons(task, measured.from_stock),
+                *_machine_reasons(task)]
     why = {"cutter": "there is nothing besides the machined skin"}
     notes = [f"{name} not checked: {why.get(name, 'its outline is not known')}"
              for name, room in rooms.items() if room == NOT_CHECKED]
@@ -353,7 +368,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        maps, task.stock, measured.from_stock)
+        maps, task.stock, measured.from_stock, lean, step_over)
 
 
 def _axis_reasons(task: VerificationTask) -> list[str]:
@@ -365,6 +380,40 @@ def _axis_reasons(task: VerificationTask) -> list[str]:
         return []
     return [f"the plan names the axis {_axis_text(task.named)}, and the tool stands at {_axis_text(task.axes[i])} at "
             f"point {i + 1}: plan the operation again"]
+
+
+def _find_lean(task: VerificationTask) -> ContactLean | None:
+    """The least lean of a ball end of which one is asked for."""
+    if task.tolerance.least_lean == 0 or task.profile.flat_radius > 0:
+        return None
+    above = task.scallop + task.tolerance.gouge
+    return least_lean((task.tips, task.axes, task.kind), task.profile, task.targets, (task.allowance, above))
+
+
+def _lean_reasons(task: VerificationTask, lean: ContactLean | None) -> list[str]:
+    least = task.tolerance.least_lean
+    if lean is None or lean.angle >= least - UNCERTAINTY:
+        return []
+    return [f"the ball end leans {degrees(lean.angle):.2f} deg from the normal of face {lean.face} at "
+            f"{spot(lean.point)}, needed {degrees(least):g} deg, on the {motion_of(task, lean.motion)}"]
+
+
+def _find_step_over(task: VerificationTask, maps: tuple[SurfaceMap, ...]) -> PassDistance | None:
+    """The greatest distance of neighbouring passes, declared zones aside, where one is asked for."""
+    if task.greatest_step_over == 0:
+        return None
+    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing) for one in maps]
+    off = task.scallop + task.tolerance.gouge
+    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces, (task.allowance, off),
+                             task.greatest_step_over)
+
+
+def _step_over_reasons(task: VerificationTask, found: PassDistance | None) -> list[str]:
+    most = task.greatest_step_over
+    if found is None or found.distance <= STEP_OVER_FACTOR * most:
+        return []
+    return [f"passes lie {found.distance:.3f} mm apart, allowed {most:g} mm, on face {found.face} at "
+            f"{spot(found.point)}"]
 
 
 def _axis_text(axis: Array) -> str:
@@ -428,6 +477,22 @@ def _reasons_of_held_side(task: VerificationTask) -> list[str]:
             verb = f"is {found.distance:.4f} mm from" if found.distance >= 0 else (
                 f"is {-found.distance:.4f} mm inside")
             reasons.append(f"{name} {verb} the held side, needed {need} mm, on the {motion_of(task, found.motion)}")
+    return reasons
+
+
+def _reasons_of_allowances(task: VerificationTask) -> list[str]:
+    """What is to be said of components that go into what is left on other faces on purpose, or come too near to it."""
+    reasons = []
+    components = {"cutter": cutter_solid(task.profile),
+                  **{name: frustum_solids(outline, name) for name, outline in task.outlines.items()}}
+    for left in sorted({value for _, value in task.left_on}):
+        faces = tuple(face for face, value in task.left_on if value == left)
+        for name, solids in components.items():
+            need = left - task.tolerance.gouge if name == "cutter" else left + _clearance_of(task, name)
+            room = clearance((task.tips, task.axes, task.kind), (name, solids), faces, enough=need)
+            if room.distance < min(need, FAR):
+                reasons.append(f"{name} {_gap(room)} face {room.face} at {spot(room.point)}, on which {left:g} mm are "
+                               f"left, needed {need:g} mm, on the {motion_of(task, room.motion)}")
     return reasons
 
 

@@ -47,7 +47,7 @@ def _touching(plan: Plan, op: Operation, path: ToolPath) -> tuple[NDArray[np.int
     """Rows of a path at which the tool touches the face or its continuation, and the parameters there."""
     cutting = path.kind == Motion.CUT
     rows = np.flatnonzero(cutting | np.append(cutting[1:], False))
-    found = contacts_of(op.face, op.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance)
+    found = contacts_of(op.face, op.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance_of(op.face))
     near = found.off <= _NEAR
     return rows[near], found.uv[near]
 

@@ -1,9 +1,9 @@
 """What a job is asked for in words: face lists, tools, holders and limits, resolved and checked."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite, pi
-from numbers import Integral
+from math import isfinite, isnan, nan, pi
+from numbers import Integral, Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.job.inputs.tool_file import load_holder, load_tool
 from toolaxis.plan.plan import PlanInputs
+from toolaxis.shape.allowances import Allowances
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.closed_rings import ring_around
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
@@ -21,6 +22,8 @@ from toolaxis.skin.join import join, with_skins
 from toolaxis.tools.tool import Tool
 
 Numbers = tuple[int | tuple[int, ...], ...]
+
+_ALLOWANCE_FORM = "is not understood: write numbers and a length in mm such as 3,5-8=0.3"
 
 
 class SomeSkins(NamedTuple):
@@ -185,6 +188,53 @@ def numbers_to_avoid(given: Iterable[int] | int | str | None) -> tuple[int, ...]
     return tuple(sorted({int(number) for number in found}))
 
 
+def parse_allowances(given: Mapping[Any, float] | Iterable[Any] | str | None) -> tuple[tuple[int, float], ...]:
+    """Faces with an allowance of their own, each once, by their numbers.
+
+    Parameters
+    ----------
+    given : mapping of int to float, text such as "3,5-8=0.3;9=0.1", iterable of such texts or of pairs, or None
+
+    Raises
+    ------
+    InvalidInput
+        When it is not of that form, or a face has two different ones.
+    """
+    pairs: list[tuple[int, float]] = []
+    rows: list[Any] = [given] if isinstance(given, str) else list(given.items()) if isinstance(
+        given, Mapping) else list(given or ())
+    for row in rows:
+        if isinstance(row, str):
+            for piece in filter(None, map(str.strip, row.split(";"))):
+                pairs += _allowance_in(piece)
+        elif isinstance(row, Sequence) and len(row) == 2 and isinstance(row[0], str):
+            pairs += _allowance_in(f"{row[0]}={row[1]}")
+        elif isinstance(row, Sequence) and len(row) == 2 and isinstance(row[1], Real):
+            pairs.append((row[0], float(row[1])))
+        else:
+            raise InvalidInput(f"allowance on faces {row!r} {_ALLOWANCE_FORM}")
+    found: dict[int, float] = {}
+    for number, value in pairs:
+        if found.setdefault(number, value) != value:
+            raise InvalidInput(f"face {number} is to keep an allowance of {found[number]:g} mm and one of {value:g} "
+                               "mm: give one of them")
+    Allowances(0.0, found)
+    return tuple(sorted(found.items()))
+
+
+def _allowance_in(piece: str) -> list[tuple[int, float]]:
+    """Faces and their allowance in a text such as "3,5-8=0.3"."""
+    faces, _, value = piece.partition("=")
+    plain = [number.strip() for number in faces.split(",")]
+    try:
+        left = float(value)
+    except ValueError:
+        left = nan
+    if isnan(left) or not all(number.replace("-", "", 1).isdigit() for number in plain):
+        raise InvalidInput(f"allowance on faces {piece!r} {_ALLOWANCE_FORM}")
+    return [(number, left) for number in parse_faces(faces) if isinstance(number, int)]
+
+
 def offset_from(text: str) -> NDArray[np.float64]:
     """A work offset from three numbers X,Y,Z, mm.
 
@@ -316,7 +366,7 @@ def with_joined(part: Part, faces: Iterable[int | Iterable[int]] | int | str | N
 
 def _skins_by_number(part: Part, numbers: Iterable[int]) -> tuple[Face, ...]:
     """Some skins, each as one face, by the numbers that `toolaxis inspect` gives them."""
-    found = find_skins(part.avoid_faces(())).faces  # numbered as for the part alone
+    found = find_skins(replace(part.avoid_faces(()), allowances=None)).faces  # numbered as for the part alone
     for number in numbers:
         if not 1 <= number <= len(found):
             raise InvalidInput(f"skin {number} does not exist: the part has {len(found)} of two faces or more, see "

@@ -1,7 +1,7 @@
 """Judge a plan through its written form: part copy, plan.json and CL files are all that the judge sees."""
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -115,7 +115,8 @@ def _as_copy(turned: TurnedCopies, task: VerificationTask, source: tuple[Verific
 def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
-    around = group_surroundings(op.face, plan.inputs.tolerance, part=plan.part_around(op.face.number),
+    around = group_surroundings(op.face, plan.inputs.tolerance, plan.inputs.allowance_of(op.face),
+                                part=plan.part_around(op.face.number),
                                 obstacles=[face for body in plan.obstacles for face in body.faces])
 
     targets = own_pieces(op.face)
@@ -138,13 +139,14 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
     machine = plan.machine
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
     return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
-                            plan.inputs.scallop, plan.inputs.allowance, _of(SKIN), _of(TOUCHING),
+                            plan.inputs.scallop, plan.inputs.allowance_of(op.face), _of(SKIN), _of(TOUCHING),
                             (*_of(OTHER), *avoided), op.tool.outlines, plan.inputs.tolerance, left,
                             op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
                             before=_end_of(last, op.tool), held=_side_for_judge(plan), stock=plan.inputs.stock,
-                            proud=_proud(plan))
+                            proud=_proud(plan), greatest_step_over=plan.inputs.greatest_step_over,
+                            left_on=_left_on(plan, targets))
 
 
 def _side_for_judge(plan: Plan) -> HeldSide | None:
@@ -160,6 +162,16 @@ def _proud(plan: Plan) -> tuple[Face, ...]:
         return ()
     every = [own for face in plan.part.faces for own in own_pieces(face)]
     return tuple(own for own in every if own.number in stock.faces)
+
+
+def _left_on(plan: Plan, targets: Sequence[Face]) -> tuple[tuple[Face, float], ...]:
+    """The part's own faces with an allowance, by the inputs in plan.json, without those that an operation machines."""
+    if not plan.inputs.allowance_on:
+        return ()
+    own = {face.number for face in targets}
+    every = [one for face in plan.part.faces for one in own_pieces(face) if one.number not in own]
+    rows = [(one, plan.inputs.allowance_of(one)) for one in every]
+    return tuple((one, left) for one, left in rows if left > 0)
 
 
 def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:
@@ -264,4 +276,6 @@ def _operation_document(op: OperationVerdict) -> dict[str, Any]:
             "worst_scallop": [_place(p) for p in op.worst_scallop],
             "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
             "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
+            "least_lean": None if op.lean is None else op.lean.angle,
+            "step_over": None if op.step_over is None else op.step_over.distance,
             "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}

@@ -116,7 +116,7 @@ def zones_of(plan: Plan, op: Operation) -> tuple[Zone, ...]:
         return beyond_layers(op.face, op.path, op.orientation.feed)
     if not op.zones:
         return ()
-    height = plan.inputs.allowance + FACTOR * plan.inputs.scallop
+    height = plan.inputs.allowance_of(op.face) + FACTOR * plan.inputs.scallop
     zones = _name_avoided(plan, op, tuple(replace(zone, elsewhere=0.0) for zone in op.zones))
     others = [Excess(op.face, other.tool, other.path, height) for other in plan.operations
               if other.path is not None and other.number != op.number and other.face.number == op.face.number]
@@ -135,7 +135,7 @@ def _name_avoided(plan: Plan, op: Operation, zones: tuple[Zone, ...]) -> tuple[Z
     for zone in zones:
         uv = np.concatenate([*zone.loops, op.face.trimmed(zone.loops).places_on(_PLACES)])
         named = tuple(face.label for face in avoided if zone.at_wall and (
-            clearance(op.face, alone, uv, axis, face, allowance=plan.inputs.allowance) < least).any())
+            clearance(op.face, alone, uv, axis, face, allowance=plan.inputs.allowance_of(op.face)) < least).any())
         found.append(replace(zone, avoided=named))
     return tuple(found)
 

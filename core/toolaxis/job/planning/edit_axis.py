@@ -52,8 +52,10 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
     feeds = feeds_of(plan.inputs.at_rates_of(op.tool))
     return task(op.face, op.tool, plan.inputs.scallop, _limits(plan),
                 [face for body in plan.obstacles for face in body.faces], objective=plan.inputs.objective,
-                part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance, allowance=plan.inputs.allowance,
-                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds, progress=progress)
+                part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance,
+                allowance=plan.inputs.allowance_of(op.face),
+                direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds,
+                greatest_step_over=plan.inputs.step_over, progress=progress)
 
 
 def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:

@@ -1,6 +1,6 @@
 """The main job: from a part and a tool to operations, each with its axis, passes and work coordinate system."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import count
@@ -14,7 +14,14 @@ from toolaxis.cad.machines import load_machine, with_hulls
 from toolaxis.cad.unit_checks import tool_warnings
 from toolaxis.errors import Cancelled, InvalidInput, ToolAxisError, fault, piece_of
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
-from toolaxis.job.inputs.spec import check_not_avoided, choose_faces, numbers_to_avoid, with_joined, with_rings
+from toolaxis.job.inputs.spec import (
+    check_not_avoided,
+    choose_faces,
+    numbers_to_avoid,
+    parse_allowances,
+    with_joined,
+    with_rings,
+)
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
@@ -66,6 +73,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          datum: Sequence[float] = (0.0, 0.0, 0.0), limits: AxisLimits | str | None = None,
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
+         least_lean: float | None = None, greatest_step_over: float = 0.0,
+         allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
@@ -159,6 +168,15 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         given. The result is the same for any number.
     most_tools : int, optional
         Greatest number of tools that are used, where several are given.
+    least_lean : float, optional
+        Least angle between the axis of a ball end, tapered ones too, and the normal at every contact, rad; below 90
+        degrees.  `tolerance.least_lean` unless given, which is none unless given either.
+    greatest_step_over : float
+        Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows; 0 for none.
+    allowance_on : mapping of int to float, or text such as "3,5-8=0.3;9=0.1", optional
+        What is left on some faces in place of `allowance`, mm, by their numbers: they are machined to that height, and
+        kept to it while others are machined.  A part with such faces is planned face by face, its blades not told
+        apart.
     progress : Progress
 
     Returns
@@ -184,22 +202,31 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     if objective is None:
         timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
         objective = "time" if timed else "length"
+    limits_kept = Tolerance.of(tolerance)
+    if least_lean is not None:
+        limits_kept = replace(limits_kept, least_lean=float(least_lean))
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
     chosen = check_strategy(strategy, Asked(
         cutter, None if mounting is None else mounting.machine, method, objective,
-        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes))
+        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
+        least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over)))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
     inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words,
                         FEEDRATE if feedrate is None else float(feedrate),
-                        SPINDLE if spindle is None else float(spindle), Tolerance.of(tolerance), float(rapid),
+                        SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
-                        numbers_to_avoid(avoid), held, float(stock))
+                        numbers_to_avoid(avoid), held, float(stock), float(greatest_step_over),
+                        parse_allowances(allowance_on))
     if objective == "time":
         require_machine_limits(mounting)
-    inputs.check_tool(cutter)
+    if len(rack.tools) > 1:
+        inputs.check_rack(rack.tools)
+    else:
+        inputs.check_tool(cutter)
     loaded = load(part).avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
+    loaded = loaded.leave_allowances(inputs.allowance, dict(inputs.allowance_on))
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
@@ -226,6 +253,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                            "leave one of both out")
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     chosen_faces = choose_faces(loaded, numbers)
+    if loaded.allowances is not None:
+        for face in loaded.faces:
+            loaded.allowances.check_alike(face)
     if inputs.stock > 0:
         loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
@@ -237,6 +267,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
         return _tell_apart(_order_operations(made, progress), free, in_clamping)
     untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
+    untouched = untouched and loaded.allowances is None
     whole = faces is None and untouched and method in METHODS
     made = _plan_part(job, free, (whole, compare), progress)
     return _tell_apart(_order_operations(made, progress), free, in_clamping)
@@ -276,7 +307,7 @@ def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     """The blades of a part; None where it has none, or they cannot be told apart."""
-    if part.original or part.selected or part.avoided or part.held:
+    if part.original or part.selected or part.avoided or part.held or part.allowances:
         return None
     with activate_progress(progress), suppress(Exception):  # its faces are planned as those of any part then
         return find_pattern(part, progress)[0]

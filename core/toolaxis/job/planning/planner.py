@@ -547,8 +547,9 @@ class PlanningJob:
     def _task(self, face: Face, progress: Progress) -> FaceProblem:
         return search_task(face, self.tool, self.inputs.scallop, self.axis_limits, self.obstacles,
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
-                           part=self.part, allowance=self.inputs.allowance, tolerance=self.inputs.tolerance,
-                           direction=self.inputs.direction, passes=self.inputs.passes, progress=progress)
+                           part=self.part, allowance=self.inputs.allowance_of(face), tolerance=self.inputs.tolerance,
+                           direction=self.inputs.direction, passes=self.inputs.passes,
+                           greatest_step_over=self.inputs.step_over, progress=progress)
 
 
 def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:

@@ -387,8 +387,9 @@ class _Screen:
         axes = self._axes[(cells.normal @ self._axes.T > 0).any(axis=0)]
         if not len(axes) or not len(cells):
             return (ToolChain((), 0.0, 0.0),)
-        reached = screen_reach(cells, tools, axes, self._scene)
-        wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance)
+        scene = replace(self._scene, allowance=inputs.allowance_of(face))
+        reached = screen_reach(cells, tools, axes, scene)
+        wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
         held = reached & (wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)

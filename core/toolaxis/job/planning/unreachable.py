@@ -72,6 +72,7 @@ def with_unreachable(plan: Plan, jobs: Sequence[PlanningJob], progress: Progress
         inner.report("proof of what is out of reach", k, len(places))
         one = places[k]
         scene = scenes[id(around[one.face.number])]
+        scene = replace(scene, allowance=job.inputs.allowance_of(one.face))
         return prove_unreachable(one.face, jobs, scene, one.face.area / whole).area
 
     found = abreast(_prove, len(places), job.workers, progress)

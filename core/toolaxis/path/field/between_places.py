@@ -32,7 +32,8 @@ def hidden_passes(chart: LevelChart, cut: Cut, count: int) -> float:
     if not known.any():
         return 0.0
     halves = strip_width(chart.face, cut.tool, uv, cut.axis, cut.scallop, chart.feed_at(uv), cut.allowance)
-    across = np.maximum(halves.sum(axis=1) * chart.gradient(uv), np.finfo(float).tiny)
+    width = np.minimum(halves.sum(axis=1), cut.greatest_step_over)
+    across = np.maximum(width * chart.gradient(uv), np.finfo(float).tiny)
     step = chart.field.at(uv).value
     low, high = step.min(), step.max()
     level = np.minimum((_LEVELS * (step - low) / max(high - low, np.finfo(float).tiny)).astype(int), _LEVELS - 1)

@@ -166,6 +166,7 @@ def tabulate_directions(face: Face, cut: Cut, count: int, *, only_inside: bool =
     halves = strip_width(face, cut.tool, np.repeat(uv, _DIRECTIONS, axis=0), cut.axis, cut.scallop,
                          feeds_in(frame, angles), cut.allowance)
     width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), _DIRECTIONS)
+    width = np.minimum(width, cut.greatest_step_over)
     widest = width.max(axis=1)
     least = np.maximum(_NARROW * widest, _NARROWEST * cut.scallop)[:, None]
     return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),

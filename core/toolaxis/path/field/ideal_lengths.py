@@ -46,16 +46,18 @@ class DirectionForms:
     cutter: CutterParameters
     leans: Array
     scallop: float
+    greatest_step_over: float = np.inf
 
     @staticmethod
-    def of(face: Face, tool: Tool, scallop: float, allowance: float = 0.0) -> "DirectionForms":
+    def of(face: Face, tool: Tool, scallop: float, allowance: float = 0.0,
+           greatest_step_over: float = np.inf) -> "DirectionForms":
         """Prepare a face.
 
         Parameters
         ----------
         face : Face
         tool : Tool
-        scallop, allowance : float
+        scallop, allowance, greatest_step_over : float
             mm
         """
         uv = face.grid(_PLACES, _PLACES)
@@ -69,7 +71,7 @@ class DirectionForms:
         feeds = feeds_in(feed_frame(face, uv), angles)
         forms = contact_forms(face, np.repeat(uv, _DIRECTIONS, axis=0), feeds, False)
         return DirectionForms(forms, area, np.array(size), screening_cutter(tool, scallop, allowance),
-                              lean_table(tool, scallop), scallop)
+                              lean_table(tool, scallop), scallop, greatest_step_over)
 
     def estimate(self, axes: Array) -> Estimates:
         """Ideal number and length of passes for axes (k, 3); inf where a place has no strip."""
@@ -81,5 +83,6 @@ class DirectionForms:
         half = screen_many(self.forms, axes, self.cutter, self.scallop)
         half *= lean_ratios(self.leans, axes @ self.forms[:, :3].T, axes @ self.forms[:, 3:6].T)
         widest = 2 * half.reshape(len(axes), len(self.area), _DIRECTIONS).max(axis=2)
+        widest = np.minimum(widest, self.greatest_step_over)
         rate = np.where(widest > 0, 1 / np.where(widest > 0, widest, 1.0), np.inf)
         return np.asarray(rate @ self.area)

@@ -188,10 +188,11 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     source : str
         Where the part came from.
     """
-    given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid))}
+    given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid)),
+             "allowance_on": "" if plan.part.allowances is None else plan.part.allowances.described}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
-    units = {"scallop": "mm", "allowance": "mm", "stock": "mm", "feedrate": "mm/min", "rapid": "mm/min",
-             "spindle": "rev/min"}
+    units = {**dict.fromkeys(("scallop", "allowance", "stock", "greatest_step_over"), "mm"),
+             "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
             for name, value in given.items()]
     names = {"gouge": "machining tolerance"}
@@ -218,7 +219,9 @@ def setting_rows(plan: Plan, source: str) -> Rows:
 
 
 def _tolerance(name: str, value: float) -> str:
-    return f"{np.degrees(value):g}°" if name == "min_lead" else f"{value:g}" + ("" if name == "trim" else " mm")
+    if name in ("min_lead", "least_lean"):
+        return f"{np.degrees(value):g}°"
+    return f"{value:g}" + ("" if name == "trim" else " mm")
 
 
 def _outline(rows: Array | None) -> str:

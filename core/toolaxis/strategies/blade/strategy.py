@@ -29,6 +29,7 @@ class BladeStrategy(Strategy):
     rank = 3
     rotary_axes = 1
     in_layers = True
+    own_spacing = True
     at_points = True
     #: Of `toolaxis.strategies.blade.schedule.CURVES`: how tool angles are chosen.
     curve: ClassVar[str] = "least"

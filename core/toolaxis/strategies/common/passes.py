@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.collision.machine_collision import CollisionPoint, MachineSurroundings, words
+from toolaxis.contact.contact_from_cl import contacts_of
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN
-from toolaxis.feasibility.violations import BACK, LIMITS, Violation
+from toolaxis.feasibility.violations import BACK, LIMITS, WANDERS, Violation
 from toolaxis.feed.continuous_ik import AxisTrajectory, following
 from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.setup import Mounting
-from toolaxis.numeric.vectors import unit
+from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.chord_tolerance import follow, rises
 from toolaxis.path.cl_points import climbing
 from toolaxis.path.links import Linking
@@ -107,8 +108,30 @@ def plan_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any],
     witness = beyond(job, path)
     if witness is not None:
         return MovingAxisResult(witness=witness)
+    upright = _leans_too_little(job, cut, path)
+    if upright is not None:
+        return MovingAxisResult(witness=upright)
     proof = prove_moving(path, cut.tool, job.groups, job.worth.allowance, progress=job.progress)
     return MovingAxisResult(placed, path, proof.witness, proof)
+
+
+def _leans_too_little(job: FaceProblem, cut: MovingCut[Any], path: ToolPath) -> Violation | None:
+    """Where a ball end leans less from the normal at its contact than is asked for, at the points of the path and in
+    the middle between them."""
+    least = job.feasibility.least_angle
+    if cut.tool.flat_radius > 0 or least == 0:
+        return None
+    after = np.flatnonzero(path.kind == Motion.CUT)
+    middle = (path.cl[after - 1] + path.cl[after]) / 2, path.axis[after - 1] + path.axis[after]
+    tips = np.concatenate([path.cl[after - 1], middle[0], path.cl[after]])
+    axes = np.asarray(unit(np.concatenate([path.axis[after - 1], middle[1], path.axis[after]])))
+    face = job.worth.face
+    uv = contacts_of(face, cut.tool, tips, axes, cut.allowance).uv
+    lean = angle_between(axes, face.normal(uv))
+    i = int(np.argmin(lean))
+    if lean[i] >= least:
+        return None
+    return Violation(WANDERS, float(least - lean[i]), point=face.evaluate(uv[i][None]).point[0], uv=uv[i])
 
 
 def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tuple[Layout, ToolPath]:

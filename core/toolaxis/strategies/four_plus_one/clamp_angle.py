@@ -106,7 +106,8 @@ class ClampSearch:
         self.job, self.mounting = job, mounting
         self.nodes = {feed: Nodes(ClampedChart(job.worth.face, feed), job.worth.tool.radius) for feed in ("u", "v")}
         worth = job.worth
-        self.plain = Cut(worth.tool, np.array([0.0, 0.0, 1.0]), worth.scallop, worth.allowance)
+        self.plain = Cut(worth.tool, np.array([0.0, 0.0, 1.0]), worth.scallop, worth.allowance,
+                         worth.greatest_step_over)
         self.looked = 0
 
     def clamp(self, which: int, angle: float) -> Clamp:
@@ -171,7 +172,7 @@ class ClampSearch:
 
     @property
     def _upright(self) -> float:
-        return float(max(self.job.feasibility.least_angle, _UPRIGHT))
+        return float(max(self.job.feasibility.least_angle_in_motion, _UPRIGHT))
 
     def _widths(self, clamp: Clamp, feed: str, angles: Array) -> Array:
         """Strip widths in the step parameter, (j, i, k); 0 where there is none, infinite off the face."""
@@ -180,6 +181,7 @@ class ClampSearch:
         half = screen_many(forms, axes, self.plain.numbers, self.plain.scallop)
         along, left, up = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
         width = 2 * half * lean_ratios(self.plain.leans, along, left)
+        width = np.minimum(width, self.plain.greatest_step_over / np.maximum(forms[:, 12], 1e-12))
         width[(up > np.cos(self._upright)) | (up < np.cos(limits.greatest_angle))] = 0.0
         width[:, ~nodes.counts.ravel()] = np.inf
         self.looked += len(axes)
@@ -306,7 +308,8 @@ class ClampSearch:
         nodes, worth = self.nodes[one.feed], self.job.worth
         axes = one.clamp.axes(values[nodes.counts])
         turning = ClampedAxis(one.clamp, AngleField(nodes.along, nodes.step, values), one.feed)
-        return MovingCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, field=turning)
+        return MovingCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, worth.greatest_step_over,
+                         field=turning)
 
     def _bad(self, cut: MovingCut[ClampedAxis]) -> Index:
         """Places among those between the nodes at which something is in the way."""

@@ -137,7 +137,7 @@ def path_cut(plan: Plan, op: Operation) -> tuple[MovingCut[PathAxes], Array, Arr
     axis = op.orientation.axis
     assert axis is not None
     axes = PathAxes(feed, np.array([one[0] for one in passes]), tuple(one[1] for one in passes))
-    cut = MovingCut(op.tool, axis, plan.inputs.scallop, plan.inputs.allowance, field=axes)
+    cut = MovingCut(op.tool, axis, plan.inputs.scallop, plan.inputs.allowance_of(op.face), field=axes)
     return cut, uv, path.axis[rows]
 
 
@@ -154,7 +154,7 @@ def study(plan: Plan, op: Operation) -> RoughnessStudy:
     cut, uv, axes = path_cut(plan, op)
     thin = slice(None, None, max(len(uv) // _POINTS, 1))
     wide = section_width(face, op.tool, uv[thin], axes[thin], plan.inputs.scallop, feed,
-                         plan.inputs.allowance).sum(axis=1)
+                         plan.inputs.allowance_of(op.face)).sum(axis=1)
     seen = spots(face, feed, evaluation_length(ra))
     rough = roughness_at(face, cut, cut.field.steps, seen, evaluation_length(ra))
     middle = face.grid(9, 9)
@@ -185,7 +185,7 @@ def _velocities(plan: Plan, op: Operation, cut: MovingCut[PathAxes]) -> dict[str
     found = {}
     for title, axes in (("planned", cut.axes(op.face, uv)), ("20° lead", axis_from_lead_tilt(
             contact_frame(op.face, uv, cut.feed), radians(20.0), 0.0))):
-        tip = place(op.face, op.tool, uv, axes, plan.inputs.allowance)
+        tip = place(op.face, op.tool, uv, axes, plan.inputs.allowance_of(op.face))
         path = ToolPath(point, tip, axes, normal, np.full(200, Motion.CUT, dtype=np.int8),
                         np.array([0, 200], dtype=np.int64))
         try:

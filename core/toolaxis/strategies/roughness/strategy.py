@@ -29,6 +29,7 @@ class Roughness(Strategy):
     note = ("Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab "
             "Limits.")
     rank = 5
+    own_spacing = True
     machine_use = "minimises the motion of its rotary axes"
     roughness = ROUGHNESS
     at_points = True

@@ -40,7 +40,7 @@ def draw_contacts(plan: Plan, op: Operation, folder: Path) -> None:
         return
     d = op.face.evaluate(uv)
     setting = ContactSet(op.face, op.tool, uv, d.su if op.orientation.feed == "u" else d.sv, plan.inputs.scallop,
-                         plan.inputs.allowance, plan.inputs.tolerance)
+                         plan.inputs.allowance_of(op.face), plan.inputs.tolerance)
     stand = stand_of(setting, op.path.cl[some], op.path.axis[some])
     sides = np.abs(rings(setting, stand).sides).max(axis=1)
     best = int(np.argmin(np.where(stand.lift > 0.9 * stand.lift.max(), sides, np.inf)))

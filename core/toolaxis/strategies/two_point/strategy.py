@@ -25,6 +25,7 @@ class TwoPoint(Strategy):
     summary = "simultaneous five-axis milling in which a flat end or torus touches hollow faces at two points"
     note = "The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose."
     rank = 2
+    own_spacing = True
     promise = "two contacts on"
 
     @property
