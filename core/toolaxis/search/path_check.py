@@ -325,7 +325,8 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
         for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
             moves = moves[~_keep_together(tool, group, moves, table, count)]
         best = np.array([spread.get(c, most) for c in range(3)]) + _ROUGH
-    lowest_first = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable") if len(moves) else []
+    along = moves[0, 2] if len(moves) else np.zeros(3)
+    lowest_first = np.argsort(round_significant(moves[:, 0] @ along), kind="stable")
     found = _bound_least(tool, group, moves[lowest_first], components, best, _ROUGH)
     return {c: float(found[c]) for c in components}
 
