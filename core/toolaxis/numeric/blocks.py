@@ -1,4 +1,4 @@
-"""Functions that work row by row, on long arrays: some rows at a time, so that what they need in between stays small."""
+"""Functions that work row by row, on long arrays: some rows at a time, so that what they need in between is small."""
 
 from collections.abc import Callable
 

@@ -609,10 +609,10 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
     known = ProvenMotions()
-    job, placed, plain, proof = _proven_without_refused(job, placed, known)
+    job, placed, plain, proof = _prove_without_refused(job, placed, known)
     made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
     if made.placed is not placed:
-        of_all = _proven(job, made.path, known)
+        of_all = _prove_path(job, made.path, known)
         if of_all.witness is None:
             proof = of_all
         else:  # further passes are no reason to refuse an axis
@@ -659,11 +659,11 @@ def _scattered_places(face: Face, count: int) -> Array:
     return np.asarray(uv[face.contains(uv)])
 
 
-def _proven_without_refused(job: FaceProblem, placed: Layout,
+def _prove_without_refused(job: FaceProblem, placed: Layout,
                             known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
     """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
     path = job.traced(placed)
-    proof = _proven(job, path, known)
+    proof = _prove_path(job, path, known)
     for _ in range(_LEFT_OUT):
         if not len(proof.blocked):
             break
@@ -672,11 +672,11 @@ def _proven_without_refused(job: FaceProblem, placed: Layout,
             break
         job, placed = job.without(ends), fewer
         path = job.traced(placed)
-        proof = _proven(job, path, known)
+        proof = _prove_path(job, path, known)
     return job, placed, path, proof
 
 
-def _proven(job: FaceProblem, path: ToolPath, known: ProvenMotions) -> PathCheck:
+def _prove_path(job: FaceProblem, path: ToolPath, known: ProvenMotions) -> PathCheck:
     """The proof of a path, after a look at whether its machine reaches all of it."""
     beyond = machine_violation(job.feasibility, path, job.groups)
     if beyond:

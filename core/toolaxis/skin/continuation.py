@@ -153,7 +153,7 @@ class Continuation:
                 np.concatenate([np.roll(loop, -1, axis=0) for loop in self.view.outline]))
 
     @cached_property
-    def _walked(self) -> tuple[Array, Array, Array]:
+    def _stations(self) -> tuple[Array, Array, Array]:
         """Points along the outline, (n, 2), and the edges, (n,) each, before and behind them."""
         step = _DENSE * self.width
         points, before, behind = [], [], []
@@ -169,11 +169,11 @@ class Continuation:
 
     @property
     def _points(self) -> Array:
-        return self._walked[0]
+        return self._stations[0]
 
     @property
     def _edges(self) -> tuple[Array, Array]:
-        return self._walked[1:]
+        return self._stations[1:]
 
     @cached_property
     def _tree(self) -> cKDTree:
