@@ -84,7 +84,7 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
     """Write a plan's folder; its outcome, the reason for it and its figures."""
     from toolaxis.job.files.plan_folder import PLAN, read_json, read_plan, write_json, write_plan
     from toolaxis.job.files.verdict_maps import write_views
-    from toolaxis.job.output.verify import made_passes, verdict_document, verify_plan
+    from toolaxis.job.output.verify import has_passes, verdict_document, verify_plan
     from toolaxis.job.planning.pipeline import plan
 
     part, *obstacles = (_part(source, scratch, known) for source in (task.part, *task.obstacles))
@@ -105,7 +105,7 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
         written = verdict_document(judged, found)
         write_json(written, folder / "verdict.json")
         write_views(judged, found, folder)
-        verdict = "passed" if made_passes(judged, found) else "failed"
+        verdict = "passed" if has_passes(judged, found) else "failed"
         reasons += written["reasons"]
     if task.pictures:
         from toolaxis.job.output.pictures import draw_plan

@@ -18,7 +18,7 @@ _ROUNDS, _SMALL = 5, 1e-4
 _FROM = 2.0
 
 
-def limited_half_widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
+def limit_half_widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
     """Half widths of a chart (n, 2) in the step parameter, none of them beyond half the greatest step-over.
 
     Parameters
@@ -34,7 +34,7 @@ def limited_half_widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Ar
     return _limit(chart, cut, (along, step), chart.half_widths(cut, along, step))
 
 
-def limited_screen(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
+def limit_screen(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
     """About the two half widths together, (n,), in the step parameter, as `Chart.screen` tells them, within the same.
 
     Parameters

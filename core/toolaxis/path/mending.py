@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed
 from toolaxis.path.chord_tolerance import follow
-from toolaxis.path.greatest_step_over import limited_half_widths
+from toolaxis.path.greatest_step_over import limit_half_widths
 from toolaxis.path.parametrization import Chart, Cut, extents, tip_points
 from toolaxis.path.pass_layout import Layout, Reach, sampling
 from toolaxis.path.pass_pattern import PassChart
@@ -221,7 +221,7 @@ def _try_passes(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float
     """Passes at steps in and beside a zone, over all of its length as far as the cutter may stand there."""
     a0, a1, s0, s1 = bounds
     along = np.linspace(a0, a1, 7)
-    halves = limited_half_widths(chart, cut, along, np.full(7, (s0 + s1) / 2))
+    halves = limit_half_widths(chart, cut, along, np.full(7, (s0 + s1) / 2))
     good = halves[np.isfinite(halves) & (halves > 0)]
     half = float(np.median(good)) if len(good) else (s1 - s0) / 2
     count = int(np.clip(np.ceil(_IN_HALF * (s1 - s0 + 2 * half) / half), _FEWEST, _MOST))
@@ -261,7 +261,7 @@ def _with(placed: Layout, further: list[Array]) -> Layout:
     spacing, chart = placed.spacing, placed.chart
     steps = np.concatenate([spacing.steps, [pieces[0, 2] for pieces in further]])
     along = spacing.lines.measured
-    halves = [limited_half_widths(chart, placed.cut, along, np.full(len(along), pieces[0, 2])) for pieces in further]
+    halves = [limit_half_widths(chart, placed.cut, along, np.full(len(along), pieces[0, 2])) for pieces in further]
     order = np.argsort(steps, kind="stable")
     place = np.argsort(order, kind="stable")
     own = [np.full(len(one), len(spacing.steps) + k) for k, one in enumerate(further)]

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import dot
-from toolaxis.path.greatest_step_over import limited_half_widths
+from toolaxis.path.greatest_step_over import limit_half_widths
 from toolaxis.path.parametrization import Chart, Cut, tip_points
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: boo
     if len(end) == 0:
         return np.zeros(0)
     a0, a1, s0, s1 = chart.bounds
-    halves = limited_half_widths(chart, cut, end, step)
+    halves = limit_half_widths(chart, cut, end, step)
     share = np.linspace(-1.0, 1.0, _ACROSS)
     wide = np.where(share < 0, halves[:, :1], halves[:, 1:])
     places = np.clip(step[:, None] + np.nan_to_num(wide, posinf=0.0) * share, s0, s1)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.path.greatest_step_over import limited_half_widths, limited_screen
+from toolaxis.path.greatest_step_over import limit_half_widths, limit_screen
 from toolaxis.path.parametrization import Chart, Cut, IsoChart, columns, rows, tip_points
 from toolaxis.path.trim_intervals import Intervals, RowPoints, row_points, table
 from toolaxis.shape.face import Face
@@ -189,7 +189,7 @@ def _spacing(chart: Chart, cut: Cut, found: _Rows) -> Array:
     width = np.where(found.width > 0, found.width, s1 - s0)
     low = np.clip(found.step - width / 2, s0, np.maximum(s1 - width, s0))
     high = np.minimum(low + width, s1)
-    halves = limited_half_widths(chart, cut, np.tile(found.place, 3), np.concatenate([low, (low + high) / 2, high]))
+    halves = limit_half_widths(chart, cut, np.tile(found.place, 3), np.concatenate([low, (low + high) / 2, high]))
     before, between, behind = np.where((halves > 0) & (halves < np.inf), halves, np.nan).reshape(3, -1, 2)
     change = before[:, 1] + behind[:, 0] - between.sum(axis=1)
     return np.asarray(found.width + np.where(np.abs(change) < found.width / 2, change, 0.0))
@@ -207,7 +207,7 @@ def _outermost(chart: Chart, cut: Cut, beyond: "_OutsideLoops") -> _Rows:
                       for at, end in zip(found.place, ends, strict=True)])
     step = found.step
     for _ in range(_SETTLED):
-        halves = limited_half_widths(chart, cut, place, step)
+        halves = limit_half_widths(chart, cut, place, step)
         step = border + inwards * np.where(halves > 0, halves, 0.0)[[0, 1], [0, 1]]
     return found._replace(step=_off_poles(chart, cut, place, step))
 
@@ -221,7 +221,7 @@ def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
     border, inwards = np.array([s0, s1]), np.array([1.0, -1.0])
     away = np.abs(step - border)
     tried = np.append(away, _FARTHER * away)
-    halves = limited_half_widths(chart, cut, np.tile(place, 2), np.tile(border, 2) + np.tile(inwards, 2) * tried)
+    halves = limit_half_widths(chart, cut, np.tile(place, 2), np.tile(border, 2) + np.tile(inwards, 2) * tried)
     past = (halves[np.arange(4), [0, 1, 0, 1]] - tried).reshape(2, 2)
     along = np.linspace(a0, a1, _EXACT_GAPS + 1)
     for k in np.flatnonzero((away > 0) & (np.abs(past[1] - past[0]) <= _SAME * away)):
@@ -229,7 +229,7 @@ def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
         for _ in range(_HALVED):
             middle = (near + far) / 2
             there = np.full(len(along), border[k] + inwards[k] * middle)
-            ends = limited_half_widths(chart, cut, along, there)[:, k] - middle
+            ends = limit_half_widths(chart, cut, along, there)[:, k] - middle
             near, far = (middle, far) if (np.abs(ends - past[0, k]) <= _SAME * middle).all() else (near, middle)
         away[k] = near
     return np.asarray(np.where(away == np.abs(step - border), step, border + inwards * away))
@@ -278,9 +278,9 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _
     line = found.line[points.interval]
     step, along = steps[line], points.along
     exact = _widths(chart, cut, few.along, steps[found.line[few.interval]])
-    second = limited_screen(chart, cut, few.along, steps[found.line[few.interval]])
+    second = limit_screen(chart, cut, few.along, steps[found.line[few.interval]])
     ratio = np.where((exact > 0) & (second > 0), exact / np.where(second > 0, second, 1.0), 1.0)
-    guess = limited_screen(chart, cut, along, step) * np.interp(_flat(found, points), _flat(found, few), ratio)
+    guess = limit_screen(chart, cut, along, step) * np.interp(_flat(found, points), _flat(found, few), ratio)
     place, row, own = _candidates(*beyond.added(points, line, guess, steps))
     row, place = np.append(found.line[few.interval], row), np.append(few.along, place)
     own = np.append(few.interval, own)
@@ -344,7 +344,7 @@ def _vertex(left: Array, middle: Array, right: Array) -> Array:
 
 def _widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
     """Exact strip widths (n,); 0 where there is none on one side."""
-    halves = limited_half_widths(chart, cut, along, step)
+    halves = limit_half_widths(chart, cut, along, step)
     return np.asarray(np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.path.greatest_step_over import limited_half_widths
+from toolaxis.path.greatest_step_over import limit_half_widths
 from toolaxis.path.parametrization import Chart, Cut, columns, extents
 from toolaxis.path.trim_intervals import first_from, last_of, table
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -100,7 +100,7 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     fine = _grid(chart, _GAPS[-1], count)
     steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
     along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
-    exact = limited_half_widths(chart, cut, along, step).reshape(len(fine.measured), len(steps), 2)
+    exact = limit_half_widths(chart, cut, along, step).reshape(len(fine.measured), len(steps), 2)
     found = table(columns(chart, fine.measured), len(fine.measured))[:, None]
     counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
     width = np.where(counts, exact.sum(axis=2), np.inf)
@@ -263,7 +263,7 @@ class _Strips:
         if step != self._step:
             along = self.across.measured[self._needed]
             self.measured = np.zeros((len(self.across.measured), 2))
-            found = limited_half_widths(self.chart, self.cut, along, np.full(len(along), step))
+            found = limit_half_widths(self.chart, self.cut, along, np.full(len(along), step))
             some = self._material[self._needed]
             beside = np.asarray(~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1))
             self.measured[self._needed] = _borrow(found, beside)

@@ -192,7 +192,7 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     """
     missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
     return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
-            "made_passed": made_passes(plan, verdict),
+            "made_passed": has_passes(plan, verdict),
             "complete": not verdict.unjudged, "unjudged": list(verdict.unjudged),
             "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
                         *(f"between operations: {why}" for why in plan.in_the_way),
@@ -238,7 +238,7 @@ def passes(plan: Plan, verdict: Verdict) -> bool:
     return plan.outcome == "complete" and verdict.passed
 
 
-def made_passes(plan: Plan, verdict: Verdict) -> bool:
+def has_passes(plan: Plan, verdict: Verdict) -> bool:
     """Whether every operation that was made passed, and nothing is in the way between them, whatever stays open.
 
     Parameters

@@ -17,7 +17,7 @@ from toolaxis.contact.frame import axis_from_lead_tilt, contact_frame
 from toolaxis.contact.placement import place
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.violations import Violation
-from toolaxis.path.greatest_step_over import limited_half_widths
+from toolaxis.path.greatest_step_over import limit_half_widths
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
@@ -147,7 +147,7 @@ class ConstantLeadSearch:
         a0, a1, s0, s1 = chart.bounds
         along, step = a0 + (a1 - a0) * np.linspace(0, 1, _ALONG), s0 + (s1 - s0) * (np.arange(_ACROSS) + 0.5) / _ACROSS
         grid = [part.ravel() for part in np.meshgrid(step, along, indexing="ij")]
-        wide = limited_half_widths(chart, cut, grid[1], grid[0]).sum(axis=1).reshape(_ACROSS, _ALONG)
+        wide = limit_half_widths(chart, cut, grid[1], grid[0]).sum(axis=1).reshape(_ACROSS, _ALONG)
         point = self.face.evaluate(chart.uv(grid[1], grid[0])).point.reshape(_ACROSS, _ALONG, 3)
         lengths = np.linalg.norm(np.diff(point, axis=1), axis=2).sum(axis=1)
         if not (wide > 0).all():
