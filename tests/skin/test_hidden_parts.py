@@ -9,6 +9,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.numeric import jit as _compiled
 from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.plan import Plan
 from toolaxis.report.tables import plan_table
@@ -98,3 +99,26 @@ def test_it_is_in_the_account_with_where_it_lies(planned: Plan, tmp_path: Path) 
 def test_the_judge_does_not_ask_a_pass_over_the_skin_for_it(planned: Plan) -> None:
     verdict = ta.verify(planned)
     assert planned.operations[0].face.label == "1+2" and all(op.passed for op in verdict.operations), verdict.reasons
+
+
+def test_kernels_see_what_their_plain_twins_see() -> None:
+    """Faces one of which lies under another, with a gap of 8 um between two of them."""
+    shift = np.eye(4)
+    shift[0, 3] = 0.008
+    made = unite([sheets()[0], replace(sheets()[1].transformed(shift), number=2, label="2")])
+    surface = made.surface
+    assert isinstance(surface, ViewSurface)
+    view = surface._view
+    assert (view._table is not None) == _compiled.available
+    low, high = np.concatenate(surface.outline).min(axis=0), np.concatenate(surface.outline).max(axis=0)
+    places = low - 1 + np.random.default_rng(4).random((4000, 2)) * (high - low + 2)
+    middle = surface.seen[0].project(np.column_stack([np.full(50, 20.004), np.linspace(10, 19, 50), np.zeros(50)]))
+    places = np.concatenate([places, middle])
+    owner, gap = view._find_plainly(places)
+    owner[gap] = view.nearest(places[gap])
+    assert len(gap) >= 50 and set(owner) == {-1, 0, 1}
+    assert np.array_equal(view.owners(places), owner)
+    within = owner >= 0
+    for mine, plain in zip(view.evaluate(places[within], owner[within]),
+                           view._evaluate_plainly(places[within], owner[within]), strict=True):
+        assert np.abs(mine - plain).max() < 1e-9

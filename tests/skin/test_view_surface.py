@@ -61,7 +61,7 @@ def test_the_kernel_finds_what_its_plain_twin_finds(united: Face) -> None:
     assert isinstance(united.surface, ViewSurface)
     seen = [*united.surface.seen, SeenFace(ring(), np.eye(3)[:2], np.zeros(3))]
     for one in seen:
-        assert one._has_kernel == _compiled.available
+        assert one.has_kernel == _compiled.available
         low, high = one.box
         places = low - 0.1 * (high - low) + PLACES * 1.2 * (high - low)
         places = places[one.contains(places)]

@@ -80,29 +80,44 @@ def slabs(loops: tuple[Array, ...]) -> EdgeIndex:
 
 
 @jit
-def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
-            grid: tuple[float, float, float, float], points: Array, out: NDArray[np.bool_]) -> None:
+def lies_inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
+                grid: tuple[float, float, float, float], x: float, y: float) -> bool:
+    """Whether one point lies inside an odd number of loops; a part of kernels.
+
+    Parameters
+    ----------
+    edges : (m, 4) array
+    table : pair of arrays
+        Of an `EdgeIndex`: start and member.
+    grid : tuple of float
+        Its low and height, and the two numbers of its border.
+    x, y : float
+    """
     start, member = table
     low, height, wide, tall = grid
     count = start.shape[0] - 1
+    position = (y - low) / height
+    odd = False
+    if position >= 0.0 and y <= low + (count + 1) * height:
+        slab = min(int(position), count - 1)
+        for m in range(start[slab], start[slab + 1]):
+            e = member[m]
+            x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
+            if min(y0, y1) - tall <= y <= max(y0, y1) + tall:
+                if min(x0, x1) - wide <= x <= max(x0, x1) + wide:
+                    dx, dy = x1 - x0, y1 - y0
+                    if abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide:
+                        return True
+                if (y0 > y) != (y1 > y) and x0 + (x1 - x0) * (y - y0) / (y1 - y0) > x:
+                    odd = not odd
+    return odd
+
+
+@jit
+def _inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
+            grid: tuple[float, float, float, float], points: Array, out: NDArray[np.bool_]) -> None:
     for k in range(points.shape[0]):
-        x, y = points[k, 0], points[k, 1]
-        position = (y - low) / height
-        odd = False
-        if position >= 0.0 and y <= low + (count + 1) * height:
-            slab = min(int(position), count - 1)
-            for m in range(start[slab], start[slab + 1]):
-                e = member[m]
-                x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
-                if min(y0, y1) - tall <= y <= max(y0, y1) + tall:
-                    if min(x0, x1) - wide <= x <= max(x0, x1) + wide:
-                        dx, dy = x1 - x0, y1 - y0
-                        if abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide:
-                            odd = True
-                            break
-                    if (y0 > y) != (y1 > y) and x0 + (x1 - x0) * (y - y0) / (y1 - y0) > x:
-                        odd = not odd
-        out[k] = odd
+        out[k] = lies_inside(edges, table, grid, points[k, 0], points[k, 1])
 
 
 def inside(table: EdgeIndex, points: Array) -> NDArray[np.bool_]:

@@ -10,7 +10,17 @@ from scipy.spatial import cKDTree
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.covered_parts import Loops, covered_parts
+from toolaxis.skin.place_kernel import turn_into_plane
 from toolaxis.skin.seen_face import SeenFace
+from toolaxis.skin.view_kernel import (
+    CELLS,
+    GAP,
+    ViewTable,
+    find_owned,
+    find_owners,
+    tabulate_polygons,
+    tabulate_splines,
+)
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -39,6 +49,18 @@ class FacesInView:
         ----------
         places : (n, 2) array
         """
+        if self._table is not None:
+            owner = np.empty(len(places), dtype=np.intp)
+            find_owners(self._table, np.ascontiguousarray(places, dtype=float), owner)
+            gap = np.flatnonzero(owner == GAP)
+        else:
+            owner, gap = self._find_plainly(places)
+        if len(gap):
+            owner[gap] = self.nearest(places[gap])
+        return owner
+
+    def _find_plainly(self, places: Array) -> tuple[Index, Index]:
+        """The plain twin of `toolaxis.skin.view_kernel.find_owners`; which places lie between faces stands apart."""
         owner = np.full(len(places), -1, dtype=np.intp)
         low, high = self._boxes
         near = np.asarray(((places >= low[:, None]) & (places <= high[:, None])).all(axis=2))
@@ -48,10 +70,21 @@ class FacesInView:
                 mine = left[self.seen[k].contains(places[left])]
                 owner[mine[~self._is_covered(k, places[mine])]] = k
         gap = np.flatnonzero(owner < 0)
-        gap = gap[inside(self._around, places[gap])] if len(gap) else gap
-        if len(gap):
-            owner[gap] = self.nearest(places[gap])
-        return owner
+        return owner, gap[inside(self._around, places[gap])] if len(gap) else gap
+
+    @cached_property
+    def _table(self) -> ViewTable | None:
+        """All faces for the kernels; None where one of them has none."""
+        if not all(one.has_kernel for one in self.seen):
+            return None
+        hiding = [slabs(part) for parts in self.covered for part in parts]
+        outlines = [slabs(one.outline) for one in self.seen]
+        first = len(outlines) + np.cumsum([0, *(len(parts) for parts in self.covered)])
+        splines = tabulate_splines([one.face.surface for one in self.seen], [one.frame.ends for one in self.seen],
+                                   [one.begin_in_cells(CELLS) for one in self.seen])
+        frame = self.seen[0].frame
+        return ViewTable(frame.rows, frame.origin, np.ascontiguousarray(self._boxes.swapaxes(0, 1)),
+                         first.astype(np.int64), tabulate_polygons([*outlines, *hiding, self._around]), splines)
 
     @cached_property
     def covered(self) -> tuple[tuple[Loops, ...], ...]:
@@ -74,6 +107,15 @@ class FacesInView:
         owner : (n,) array of int
             The face at each place.
         """
+        if self._table is not None:
+            table = np.empty((len(places), 6, 3))
+            find_owned(self._table, np.ascontiguousarray(places, dtype=float), np.ascontiguousarray(owner), table)
+            turn_into_plane(self._table.rows, table)
+            return Derivatives(*(table[:, k] for k in range(6)))
+        return self._evaluate_plainly(places, owner)
+
+    def _evaluate_plainly(self, places: Array, owner: Index) -> Derivatives:
+        """Face by face."""
         found = Derivatives(*np.empty((6, len(places), 3)))
         for k in np.unique(owner):
             rows = owner == k

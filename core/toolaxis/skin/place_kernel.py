@@ -35,6 +35,44 @@ def _part(rows: Array, k: int, vector: Array) -> float:
 
 
 @jit
+def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> None:
+    """Parameters of a surface at one place of the plane, with the six vectors there.
+
+    Parameters
+    ----------
+    data : SurfaceData
+    frame : PlaceFrame
+    place : (2,) array
+    uv : (2,) array
+        Where to begin; receives the parameters.
+    d : (6, 3) array
+        Receives S, Su, Sv, Suu, Suv, Svv.
+    work : (6, 26) array
+        What is in it does not count.
+    """
+    rows, origin, ends = frame
+    for _ in range(ITERATIONS):
+        surface_derivatives(data, uv[0], uv[1], d, work)
+        x = place[0] - (_part(rows, 0, d[0]) - _part(rows, 0, origin))
+        y = place[1] - (_part(rows, 1, d[0]) - _part(rows, 1, origin))
+        ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
+        det = ax * by - ay * bx
+        along_u, along_v = 0.0, 0.0
+        if abs(det) > PARALLEL * np.sqrt(ax * ax + ay * ay) * np.sqrt(bx * bx + by * by):
+            along_u, along_v = (x * by - y * bx) / det, (ax * y - ay * x) / det
+        size = max(abs(along_u) / ends[0, 1], abs(along_v) / ends[1, 1])
+        shorter = FAR / size if size > FAR else 1.0
+        uv[0] += shorter * along_u
+        uv[1] += shorter * along_v
+        for k in range(2):
+            if np.isfinite(ends[k, 2]):
+                uv[k] = ends[k, 0] + (uv[k] - ends[k, 0]) % ends[k, 2]
+        if size <= LAST:
+            break
+    surface_derivatives(data, uv[0], uv[1], d, work)
+
+
+@jit
 def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, out: Array) -> None:
     """Parameters of a surface at places of a plane, with the six vectors there.
 
@@ -48,28 +86,9 @@ def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, 
     out : (n, 6, 3) array
         Receives S, Su, Sv, Suu, Suv, Svv.
     """
-    rows, origin, ends = frame
-    work, step = np.empty((6, 26)), np.empty(2)
+    work = np.empty((6, 26))
     for i in range(places.shape[0]):
-        d = out[i]
-        for _ in range(ITERATIONS):
-            surface_derivatives(data, uv[i, 0], uv[i, 1], d, work)
-            x = places[i, 0] - (_part(rows, 0, d[0]) - _part(rows, 0, origin))
-            y = places[i, 1] - (_part(rows, 1, d[0]) - _part(rows, 1, origin))
-            ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
-            det = ax * by - ay * bx
-            step[0], step[1] = 0.0, 0.0
-            if abs(det) > PARALLEL * np.sqrt(ax * ax + ay * ay) * np.sqrt(bx * bx + by * by):
-                step[0], step[1] = (x * by - y * bx) / det, (ax * y - ay * x) / det
-            size = max(abs(step[0]) / ends[0, 1], abs(step[1]) / ends[1, 1])
-            shorter = FAR / size if size > FAR else 1.0
-            for k in range(2):
-                uv[i, k] += shorter * step[k]
-                if np.isfinite(ends[k, 2]):
-                    uv[i, k] = ends[k, 0] + (uv[i, k] - ends[k, 0]) % ends[k, 2]
-            if size <= LAST:
-                break
-        surface_derivatives(data, uv[i, 0], uv[i, 1], d, work)
+        find_place(data, frame, places[i], uv[i], out[i], work)
 
 
 @jit

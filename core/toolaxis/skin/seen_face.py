@@ -133,13 +133,13 @@ class SeenFace:
         ----------
         places : (n, 2) array
         """
-        return self._find_by_kernel(places)[0] if self._has_kernel else self._find_plainly(places, self._begin(places))
+        return self._find_by_kernel(places)[0] if self.has_kernel else self._find_plainly(places, self._begin(places))
 
     def _find_by_kernel(self, places: Array) -> tuple[Array, Array]:
         """The parameters, and the six vectors S, Su, Sv, Suu, Suv, Svv there, (n, 6, 3)."""
         uv = self._begin(places)
         table = np.empty((len(uv), 6, 3))
-        find_places(self.face.surface.data, self._frame, np.ascontiguousarray(places, dtype=float), uv, table)
+        find_places(self.face.surface.data, self.frame, np.ascontiguousarray(places, dtype=float), uv, table)
         return uv, table
 
     def _begin(self, places: Array) -> Array:
@@ -147,19 +147,34 @@ class SeenFace:
         breathe()
         return self.samples[self._tree.query(places)[1]].copy()
 
+    def begin_in_cells(self, count: int) -> Array:
+        """Parameters from which places are looked for, by the cell of the box in which they lie, (count, count, 2).
+
+        Parameters
+        ----------
+        count : int
+            Cells each way.
+        """
+        share = (np.arange(count) + 0.5) / count
+        low, high = self.box
+        middles = np.stack(np.meshgrid(*(low + share[:, None] * (high - low)).T, indexing="ij"), axis=-1)
+        return self._begin(middles.reshape(-1, 2)).reshape(count, count, 2)
+
     @cached_property
-    def _has_kernel(self) -> bool:
+    def has_kernel(self) -> bool:
+        """Whether there is a kernel for the face's surface."""
         return _compiled.available and type(self.face.surface) is NurbsSurface
 
     @cached_property
-    def _frame(self) -> PlaceFrame:
+    def frame(self) -> PlaceFrame:
+        """The plane and the face's range for kernels."""
         (u0, u1), (v0, v1) = self.face.surface.domain
         ends = np.array([[u0, u1 - u0, self.periods[0]], [v0, v1 - v0, self.periods[1]]])
         return PlaceFrame(np.ascontiguousarray(self.rows, dtype=float), np.asarray(self.origin, dtype=float), ends)
 
     def _find_plainly(self, places: Array, uv: Array) -> Array:
         """The plain twin of `toolaxis.skin.place_kernel.find_places`."""
-        low, span = self._frame.ends[:, 0], self._frame.ends[:, 1]
+        low, span = self.frame.ends[:, 0], self.frame.ends[:, 1]
         todo = np.arange(len(uv))
         for _ in range(ITERATIONS):
             d = self.face.evaluate(uv[todo])
@@ -180,10 +195,10 @@ class SeenFace:
         ----------
         places : (n, 2) array
         """
-        if not self._has_kernel:
+        if not self.has_kernel:
             return self._evaluate_plainly(self.find(places))
         table = self._find_by_kernel(places)[1]
-        turn_into_plane(self._frame.rows, table)
+        turn_into_plane(self.frame.rows, table)
         return Derivatives(*(table[:, k] for k in range(6)))
 
     def _evaluate_plainly(self, uv: Array) -> Derivatives:

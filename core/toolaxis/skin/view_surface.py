@@ -158,13 +158,14 @@ class ViewSurface(NurbsSurface):
             Places x, y in the plane, beyond the outline too.
         """
         places = np.asarray(uv, dtype=float).reshape(-1, 2)
-        found = super().evaluate(places)
         owner = self._view.owners(places)
         within = owner >= 0
+        if within.all():
+            return self._view.evaluate(places, owner)
+        found = super().evaluate(places)
         for mine, exact in zip(found, self._view.evaluate(places[within], owner[within]), strict=True):
             mine[within] = exact
-        if not within.all():
-            self._carry_on(places, found, ~within)
+        self._carry_on(places, found, ~within)
         return found
 
     def _carry_on(self, places: Array, spline: Derivatives, beyond: NDArray[np.bool_]) -> None:

@@ -1,0 +1,179 @@
+"""Which of several faces lies at places of a plane, and its points there: all faces in one table, and the kernels."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.numeric.jit import jit
+from toolaxis.numeric.polygons import EdgeIndex, lies_inside
+from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.skin.place_kernel import PlaceFrame, find_place
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+#: Cells each way over the box around a face, each with the parameters from which its places are looked for.
+CELLS = 48
+#: What is told of a place that lies in the outline around all faces, but in none of them.
+GAP = -2
+
+
+class PolygonTable(NamedTuple):
+    """Polygons as `toolaxis.numeric.polygons.slabs` sorts them, one behind the other.
+
+    edges : (m, 4) array;  start, member : arrays of int
+    first : (k + 1, 3) array of int, where edges, start and member of each begin
+    grid : (k, 4) array, low, height and border of each
+    """
+
+    edges: Array
+    start: Index
+    member: Index
+    first: Index
+    grid: Array
+
+
+class SplineTable(NamedTuple):
+    """Surfaces, one behind the other.
+
+    knots : (n,) array;  control : (m, 4) array
+    first : (k, 3) array of int, where knots in u, knots in v and control points of each begin
+    size : (k, 5) array of int, control points along u and v, degrees, and 1 where it is rational
+    ends : (k, 2, 3) array, as of `PlaceFrame`
+    begin : (k, c, c, 2) array, parameters from which places in the cells of each box are looked for
+    """
+
+    knots: Array
+    control: Array
+    first: Index
+    size: Index
+    ends: Array
+    begin: Array
+
+
+class ViewTable(NamedTuple):
+    """Faces in a plane.
+
+    rows : (2, 3) array, coordinates in the plane are rows @ (p - origin);  origin : (3,) array, mm
+    boxes : (k, 2, 2) array, lower and upper corner of each face
+    covered : (k + 1,) array of int, where the polygons begin under which each face is covered; the last: how many
+    polygons : PolygonTable, the outlines of the faces, what covers them, and the outline around all
+    splines : SplineTable
+    """
+
+    rows: Array
+    origin: Array
+    boxes: Array
+    covered: Index
+    polygons: PolygonTable
+    splines: SplineTable
+
+
+def tabulate_polygons(polygons: Sequence[EdgeIndex]) -> PolygonTable:
+    """Polygons in one table.
+
+    Parameters
+    ----------
+    polygons : sequence of EdgeIndex
+    """
+    counts = [(len(one.edges), len(one.start), len(one.member)) for one in polygons]
+    first = np.concatenate([np.zeros((1, 3), dtype=np.int64), np.cumsum(counts, axis=0)])
+    grid = np.array([[one.low, one.height, *one.border] for one in polygons])
+    edges, start, member = (np.concatenate([getattr(one, name) for one in polygons])
+                            for name in ("edges", "start", "member"))
+    return PolygonTable(edges, start, member, first.astype(np.int64), grid)
+
+
+def tabulate_splines(surfaces: Sequence[NurbsSurface], ends: Sequence[Array], begin: Sequence[Array]) -> SplineTable:
+    """Surfaces in one table.
+
+    Parameters
+    ----------
+    surfaces : sequence of NurbsSurface
+    ends, begin : sequence of array
+        Of each, as the rows of the table.
+    """
+    knots: list[Array] = []
+    first, size = [], []
+    at = control = 0
+    for one in surfaces:
+        ku, kv, net, pu, pv, rational = one.data
+        first.append((at, at + len(ku), control))
+        size.append((net.shape[0], net.shape[1], pu, pv, int(rational)))
+        knots += [ku, kv]
+        at, control = at + len(ku) + len(kv), control + net.shape[0] * net.shape[1]
+    return SplineTable(np.concatenate(knots), np.concatenate([one.control.reshape(-1, 4) for one in surfaces]),
+                       np.array(first, dtype=np.int64), np.array(size, dtype=np.int64), np.stack(ends), np.stack(begin))
+
+
+@jit
+def _lies_in(polygons: PolygonTable, k: int, x: float, y: float) -> bool:
+    """Whether a point lies in polygon k."""
+    edges, start, member, first, grid = polygons
+    return bool(lies_inside(edges[first[k, 0]:first[k + 1, 0]],
+                            (start[first[k, 1]:first[k + 1, 1]], member[first[k, 2]:first[k + 1, 2]]),
+                            (grid[k, 0], grid[k, 1], grid[k, 2], grid[k, 3]), x, y))
+
+
+@jit
+def find_owners(table: ViewTable, places: Array, owner: NDArray[np.intp]) -> None:
+    """Which face lies at places: its number, -1 beyond the outline around all, `GAP` between them.
+
+    Parameters
+    ----------
+    table : ViewTable
+    places : (n, 2) array
+    owner : (n,) array of int
+        Receives the numbers.
+    """
+    boxes, covered, polygons = table.boxes, table.covered, table.polygons
+    count, last = boxes.shape[0], polygons.first.shape[0] - 2
+    for i in range(places.shape[0]):
+        x, y = places[i, 0], places[i, 1]
+        owner[i] = -1
+        for k in range(count):
+            if not (boxes[k, 0, 0] <= x <= boxes[k, 1, 0] and boxes[k, 0, 1] <= y <= boxes[k, 1, 1]):
+                continue
+            if not _lies_in(polygons, k, x, y):
+                continue
+            seen = True
+            for c in range(covered[k], covered[k + 1]):
+                if _lies_in(polygons, c, x, y):
+                    seen = False
+                    break
+            if seen:
+                owner[i] = k
+                break
+        if owner[i] < 0 and _lies_in(polygons, last, x, y):
+            owner[i] = GAP
+
+
+@jit
+def find_owned(table: ViewTable, places: Array, owner: NDArray[np.intp], out: Array) -> None:
+    """The six vectors S, Su, Sv, Suu, Suv, Svv of faces at places, with their own parameters.
+
+    Parameters
+    ----------
+    table : ViewTable
+    places : (n, 2) array
+    owner : (n,) array of int
+        The face at each place.
+    out : (n, 6, 3) array
+        Receives the vectors.
+    """
+    knots, control, first, size, ends, begin = table.splines
+    work, uv = np.empty((6, 26)), np.empty(2)
+    cells = begin.shape[1]
+    for i in range(places.shape[0]):
+        k = owner[i]
+        low, high = table.boxes[k, 0], table.boxes[k, 1]
+        a = min(max(int((places[i, 0] - low[0]) / max(high[0] - low[0], 1e-300) * cells), 0), cells - 1)
+        b = min(max(int((places[i, 1] - low[1]) / max(high[1] - low[1], 1e-300) * cells), 0), cells - 1)
+        uv[0], uv[1] = begin[k, a, b, 0], begin[k, a, b, 1]
+        nu, nv, pu, pv = size[k, 0], size[k, 1], size[k, 2], size[k, 3]
+        behind_u, behind_v = first[k, 0] + nu + pu + 1, first[k, 1] + nv + pv + 1
+        net = control[first[k, 2]:first[k, 2] + nu * nv].reshape((nu, nv, 4))
+        data = (knots[first[k, 0]:behind_u], knots[first[k, 1]:behind_v], net, pu, pv, size[k, 4] == 1)
+        find_place(data, PlaceFrame(table.rows, table.origin, ends[k]), places[i], uv, out[i], work)
