@@ -190,15 +190,21 @@ def claims_of(part: Part, tools: Sequence[Tool], most: int = _PAIRS) -> list[Cla
     return rows
 
 
-def draw_claimed(claim: Claim, count: int, rng: np.random.Generator) -> list[Place]:
-    """Places of what is claimed of a face, every second one on the border of a cell.
+def draw_places(claim: Claim, count: int, rng: np.random.Generator, claimed: bool = True) -> list[Place]:
+    """Places of what is claimed of a face, every second one on the border of a cell, or of what is not.
 
     Parameters
     ----------
     claim : Claim
     count : int
     rng : numpy.random.Generator
+    claimed : bool
+        Else places that are not claimed are drawn, evenly by area.
     """
+    return _draw_claimed(claim, count, rng) if claimed else _draw_unclaimed(claim, count, rng)
+
+
+def _draw_claimed(claim: Claim, count: int, rng: np.random.Generator) -> list[Place]:
     face, rows = claim.face, claim.rectangles
     middle, half = (rows[:, [0, 2]] + rows[:, [1, 3]]) / 2, (rows[:, [1, 3]] - rows[:, [0, 2]]) / 2
     d = face.evaluate(middle)
@@ -216,15 +222,7 @@ def draw_claimed(claim: Claim, count: int, rng: np.random.Generator) -> list[Pla
     return found[:count]
 
 
-def draw_unclaimed(claim: Claim, count: int, rng: np.random.Generator) -> list[Place]:
-    """Places of a face, evenly by area, that are not claimed.
-
-    Parameters
-    ----------
-    claim : Claim
-    count : int
-    rng : numpy.random.Generator
-    """
+def _draw_unclaimed(claim: Claim, count: int, rng: np.random.Generator) -> list[Place]:
     face, rows = claim.face, claim.rectangles
     u0, u1, v0, v1 = face.bounds
     uv = np.array([u0, v0]) + rng.random((40 * count + 200, 2)) * [u1 - u0, v1 - v0]
@@ -243,10 +241,24 @@ def _places(face: Face, uv: Array) -> list[Place]:
             if np.linalg.norm(one[1]) > 0.5]
 
 
-def _shares(areas: Sequence[float], count: int) -> list[int]:
-    """So many places in all, by area, and one at least where there is any."""
+def draw_from_part(claims: Sequence[Claim], count: int, rng: np.random.Generator, claimed: bool) -> list[Place]:
+    """Places of all faces of a part, shared out by area, one at least of each that has any; so many in any order.
+
+    Parameters
+    ----------
+    claims : sequence of Claim
+    count : int
+    rng : numpy.random.Generator
+    claimed : bool
+        Whether of what is claimed, or of the rest.
+    """
+    areas = [one.area if claimed else max(one.face.area - one.area, 0.0) for one in claims]
     whole = sum(areas)
-    return [int(np.ceil(count * area / whole)) if area > 0 else 0 for area in areas]
+    places: list[Place] = []
+    for claim, area in zip(claims, areas, strict=True):
+        if area > 0 and (len(claim.rectangles) or not claimed):
+            places += draw_places(claim, int(np.ceil(count * area / whole)), rng, claimed)
+    return [places[k] for k in rng.permutation(len(places))[:count]]
 
 
 def measure(path: Path, asked: argparse.Namespace) -> int:
@@ -257,9 +269,7 @@ def measure(path: Path, asked: argparse.Namespace) -> int:
     proven = time.process_time()
     attack = Attack(part, tools, axes=asked.axes)
     against: list[tuple[Place, Reach]] = []
-    places = [place for claim, count in zip(claims, _shares([one.area for one in claims], asked.points), strict=True)
-              if count and len(claim.rectangles) for place in draw_claimed(claim, count, rng)]
-    places = [places[k] for k in rng.permutation(len(places))[:asked.points]]
+    places = draw_from_part(claims, asked.points, rng, claimed=True)
     closer, tried, miss = 0, 0, np.inf
     for place in places:
         found = attack.reach(place)
@@ -271,10 +281,7 @@ def measure(path: Path, asked: argparse.Namespace) -> int:
             entered = attack.reach(place, clear=False)
             tried += entered.tried
             closer += entered.lack <= 0
-    rest = [max(one.face.area - one.area, 0.0) for one in claims]
-    others = [place for claim, count in zip(claims, _shares(rest, asked.points), strict=True) if count
-              for place in draw_unclaimed(claim, count, rng)]
-    others = [others[k] for k in rng.permutation(len(others))[:asked.points]]
+    others = draw_from_part(claims, asked.points, rng, claimed=False)
     reached = sum(attack.reach(place).lack <= 0 for place in others)
     area, claimed = sum(one.face.area for one in claims), sum(one.area for one in claims)
     print(f"{path.name[:24]:24} {area:9.1f} {claimed:9.2f} {100 * claimed / area:5.1f} {len(places):6} {tried:10} "

@@ -12,6 +12,7 @@ import toolaxis as ta
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
+from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.rack import _merge, _Screen, _Waiting
@@ -265,8 +266,24 @@ def test_a_stopped_plan_tells_of_every_face(words: str, begun: int) -> None:
     assert found.open < 1e-3 * found.area, "nothing was tried in vain"
 
 
-def test_what_was_not_begun_is_told_in_table_file_and_page(tmp_path: Path) -> None:
-    made = stopped_at("face 2 (2 of 2)")
+@pytest.fixture(scope="module")
+def stopped() -> Plan:
+    return stopped_at("face 2 (2 of 2)")
+
+
+def test_the_page_of_a_stopped_plan_tells_what_was_not_begun(stopped: Plan, tmp_path: Path) -> None:
+    pytest.importorskip("plotly")
+    pytest.importorskip("jinja2")
+    with stage_folder(tmp_path / "out") as stage:
+        write_plan(stopped, stage.folder)
+        stage.publish()
+    page = report(tmp_path / "out").read_text(encoding="utf-8")
+    assert f"not begun when the plan was stopped: {stopped.account.not_begun:.1f} mm2, of faces " in page
+    assert "<dt>sub-surfaces</dt><dd>1 of 2</dd>" in page
+
+
+def test_what_was_not_begun_is_told_in_table_and_file(stopped: Plan, tmp_path: Path) -> None:
+    made = stopped
     area, rest = (one.area for one in sorted(made.unplanned, key=lambda one: one.label == "1"))
     words = f"not begun when the plan was stopped: {area + rest:.1f} mm2, of faces "
     assert words in str(plan_table(made).caption) and f"1 ({rest:.1f} mm2 of it)" in str(plan_table(made).caption)

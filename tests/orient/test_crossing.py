@@ -9,6 +9,7 @@ from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.job.planning.blade_clearances import tightest
 from toolaxis.search.fixed_axis import task
 from toolaxis.search.link_heights import OVER, LinkClearance, height_over
+from toolaxis.strategies.common.links import LinkMotion
 from toolaxis.strategies.common.path_check import MovingLinkClearance
 from toolaxis.tolerances import Tolerance
 
@@ -114,7 +115,7 @@ def test_links_keep_what_passes_leave_standing(sheet: ta.Face, scallop: float, l
     moving = MovingLinkClearance(TOOL, group_surroundings(sheet, Tolerance()), over=height_over(scallop))
     for up in (lift, 0.3 * height_over(scallop)):
         ends = [(tip + up * normal)[None] for tip in tips]
-        free, = moving.clear(*ends, normal[None], normal[None], True)
+        free, = moving.clear(*ends, normal[None], normal[None], LinkMotion.CROSSING)
         assert free == (up == lift)
 
 

@@ -10,6 +10,7 @@ from toolaxis.machine.limits import parse_limits
 from toolaxis.path.moving_axis import MovingChart
 from toolaxis.search.fixed_axis import task
 from toolaxis.shape.nearest import nearest
+from toolaxis.strategies.common.links import LinkMotion
 from toolaxis.strategies.common.passes import make_passes
 from toolaxis.strategies.common.path_check import (
     MovingLinkClearance,
@@ -58,8 +59,8 @@ def test_a_swing_through_a_wall_is_not_free_though_both_ends_are() -> None:
     before, after = (one / np.linalg.norm(one) for one in ends)
     tip = np.zeros((1, 3))
     crossing = MovingLinkClearance(TOOL, (CheckSurfaces("other", (post,), np.array([0.1, 0.5, 1.0])),))
-    assert crossing.clear(tip, tip, before, before, True).all() and crossing.clear(tip, tip, after, after, True).all()
-    assert not crossing.clear(tip, tip, before, after, True).any()
+    assert all(crossing.clear(tip, tip, one, one, LinkMotion.CROSSING).all() for one in (before, after))
+    assert not crossing.clear(tip, tip, before, after, LinkMotion.CROSSING).any()
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ import toolaxis as ta
 from toolaxis.partition.bosses import bosses_of, distances
 from toolaxis.partition.ring_division import divide_in_rings
 from toolaxis.partition.uv_grid import Lattice
-from toolaxis.path.rest_material import left_over, machined_regions
+from toolaxis.path.rest_material import RestFinder, machined_regions
 from toolaxis.plan.plan import Plan
 from toolaxis.search.fixed_axis import task
 
@@ -89,7 +89,7 @@ def test_zones_and_machined_area_are_the_sub_surface(name: str) -> None:
     job = task(piece, TOOL, 0.2, part=part)
     axis = piece.normal(piece.grid(9, 9)).mean(axis=0) + np.array([0.15, 0.1, 0.0])
     path = job.made(axis / np.linalg.norm(axis), "u")
-    zones = left_over(piece, TOOL, path, 0.2)
+    zones = RestFinder(piece, TOOL, 0.2).find(path)
     assert zones or name not in ("boss", "bosses")
     rest = machined_regions(piece, zones)
     is_made_of(piece, [*rest, *(piece.trimmed(zone.loops) for zone in zones)])

@@ -21,7 +21,7 @@ from toolaxis.path.field.pass_field import FieldProblem, PassField, find_field
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_layout import lay_out, pass_length
 from toolaxis.path.pass_pattern import FieldPasses, pattern_name
-from toolaxis.path.rest_material import left_over
+from toolaxis.path.rest_material import RestFinder
 from toolaxis.plan.choices import AUTO, FIELD, ISO
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
@@ -163,7 +163,7 @@ def test_passes_in_a_field_leave_nothing_and_come_to_what_the_field_says(seed: i
     placed = lay_out(chart, cut)
     path = trace(placed, 0.1 * H)
     assert pattern_name(placed.chart) == FIELD
-    assert sum(zone.area for zone in left_over(face, tool, path, H)) <= 1e-3 * face.area
+    assert sum(zone.area for zone in RestFinder(face, tool, H).find(path)) <= 1e-3 * face.area
     if not cut_out:
         assert placed.used == pytest.approx(chart.field.passes, rel=0.1)
 

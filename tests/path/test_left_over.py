@@ -12,7 +12,6 @@ from toolaxis.path.rest_material import (
     FACTOR,
     Excess,
     RestFinder,
-    left_over,
     machined_regions,
     may_stay,
     undercut,
@@ -64,7 +63,7 @@ def dense_distance(path: ToolPath, points: np.ndarray) -> np.ndarray:
 def test_zones_hold_what_dense_points_find(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     face = job.worth.face
-    zones = left_over(face, TOOL, path, SCALLOP)
+    zones = RestFinder(face, TOOL, SCALLOP).find(path)
     assert len(zones) == 1 and 30 < zones[0].area < 200
     uv = np.random.default_rng(2).uniform(0, 1, (700, 2))
     raised = face.evaluate(uv).point + FACTOR * SCALLOP * face.normal(uv)
@@ -108,7 +107,7 @@ def test_zones_and_machined_area_are_the_face(made: tuple[FaceProblem, ToolPath]
     job, path = made
     half = np.array([[0.0, 0.0], [0.55, 0.0], [0.5, 1.0], [0.0, 1.0]])
     for face in (job.worth.face, job.worth.face.trimmed((half,))):
-        zones = left_over(face, TOOL, path, SCALLOP)
+        zones = RestFinder(face, TOOL, SCALLOP).find(path)
         rest = machined_regions(face, zones)
         areas = sum(zone.area for zone in zones), sum(piece.area for piece in rest)
         assert sum(areas) == pytest.approx(face.area, rel=1e-9) and min(areas) > 0
@@ -123,14 +122,14 @@ def test_the_judge_finds_the_same_area_left(made: tuple[FaceProblem, ToolPath]) 
     face = job.worth.face
     given = Judged("op", path.cl, path.axis, path.kind, TOOL.profile, (face,), SCALLOP)
     seen = judge(given, spacing=0.12)
-    share = sum(zone.area for zone in left_over(face, TOOL, path, SCALLOP)) / face.area
+    share = sum(zone.area for zone in RestFinder(face, TOOL, SCALLOP).find(path)) / face.area
     assert 1 - seen.share_within == pytest.approx(share, abs=1.5e-3)
     assert sum(zone.area for zone in seen.zones if zone.area > 0.5) / face.area == pytest.approx(share, abs=1.5e-3)
 
 
 def test_a_face_without_walls_has_no_zones() -> None:
     job = task(waved(), TOOL, SCALLOP)
-    assert left_over(waved(), TOOL, job.made(np.array([0.0, 0.2, 0.98]), "u"), SCALLOP) == ()
+    assert RestFinder(waved(), TOOL, SCALLOP).find(job.made(np.array([0.0, 0.2, 0.98]), "u")) == ()
 
 
 def test_a_missing_pass_end_is_an_undercut_at_the_border_and_no_wall() -> None:
@@ -139,7 +138,7 @@ def test_a_missing_pass_end_is_an_undercut_at_the_border_and_no_wall() -> None:
     short = path.cl[:, 1] < 21
     kind = np.where(short, path.kind, Motion.LINK).astype(np.int8)
     cut = ToolPath(path.cc, path.cl, path.axis, path.normal, kind, path.breaks)
-    zones = left_over(waved(), TOOL, cut, SCALLOP, walls=lambda uv: np.zeros(len(uv), dtype=bool))
+    zones = RestFinder(waved(), TOOL, SCALLOP, walls=lambda uv: np.zeros(len(uv), dtype=bool)).find(cut)
     assert zones and not any(zone.at_wall for zone in zones)
 
 
@@ -160,8 +159,8 @@ def test_allowance_raises_what_is_asked_for() -> None:
     face = waved()
     job = task(face, TOOL, SCALLOP, allowance=0.3, tolerance=Tolerance())
     path = job.made(np.array([0.0, 0.2, 0.98]), "u")
-    assert left_over(face, TOOL, path, SCALLOP, 0.3) == ()
-    (zone, *_) = left_over(face, TOOL, path, SCALLOP, 0.0)
+    assert RestFinder(face, TOOL, SCALLOP, 0.3).find(path) == ()
+    (zone, *_) = RestFinder(face, TOOL, SCALLOP).find(path)
     assert zone.area > 0.9 * face.area
 
 
@@ -182,7 +181,7 @@ def test_what_may_stay_is_little_enough_for_the_judge(starts: tuple[float, ...],
     """Specks, which no zone tells of, beside undercut ones and half of a face declared: the rest alone is asked for."""
     plane = ta.Face.from_bspline([[[0, 0, 0], [0, 40, 0]], [[40, 0, 0], [40, 40, 0]]], degree=(1, 1))
     ball, path = ta.Tool.ball(diameter=10, stickout=40), shortened(*starts)
-    zones = left_over(plane, ball, path, SCALLOP, walls=lambda uv: uv[:, 0] > 0.5)
+    zones = RestFinder(plane, ball, SCALLOP, walls=lambda uv: uv[:, 0] > 0.5).find(path)
     declared = tuple(plane.trimmed(zone.loops) for zone in zones if zone.at_wall)
     seen = judge(Judged("op", path.cl, path.axis, path.kind, ball.profile, (plane,), SCALLOP, left=declared))
     assert (undercut(zones) <= may_stay(zones, plane.area)) == good

@@ -12,7 +12,7 @@ from toolaxis.path.mending import FurtherPasses, add_passes_over_zones, complete
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_layout import lay_out
 from toolaxis.path.pass_pattern import patterns_of
-from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, left_over
+from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, RestFinder
 from toolaxis.plan.choices import FIELD, ISO, PLANES
 
 SCALLOP, CHORD = 0.02, 0.002
@@ -41,7 +41,7 @@ def laid(face: ta.Face, number: int, feed: str, passes: str = ISO) -> FurtherPas
     pattern, = patterns_of(Estimator.of(face, tool, SCALLOP), passes)
     placed = lay_out(pattern.chart(cut, feed), cut, face.contains)
     path = trace(placed, CHORD)
-    return FurtherPasses(placed, path, left_over(face, tool, path, SCALLOP, walls=lambda uv: ~face.contains(uv)))
+    return FurtherPasses(placed, path, RestFinder(face, tool, SCALLOP, walls=lambda uv: ~face.contains(uv)).find(path))
 
 
 def share_above(face: ta.Face, tool: ta.Tool, made: FurtherPasses, factor: float) -> float:
@@ -62,7 +62,7 @@ def test_nothing_is_left_on_which_the_cutter_may_stand(outline: str, number: int
     made = laid(face, number, feed, passes)
     before = share_above(face, tool, made, FACTOR)
     assert made.left / face.area == pytest.approx(before, abs=OVERLOOKED + 2e-4)
-    left = partial(left_over, face, tool, scallop=SCALLOP, walls=lambda uv: ~face.contains(uv))
+    left = RestFinder(face, tool, SCALLOP, walls=lambda uv: ~face.contains(uv)).find
     trace_all = partial(trace, chord=CHORD)
     done = complete_passes(made.placed, trace_all(made.placed), trace_all, left, face.contains)
     assert share_above(face, tool, done, FACTOR) <= min(before, OVERLOOKED + 3e-4)

@@ -13,7 +13,7 @@ from toolaxis.path.chord_tolerance import follow
 from toolaxis.path.links import Linking
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.path.parametrization import Cut, IsoChart
-from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
+from toolaxis.strategies.common.links import LinkMotion, MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.tools.tool import Tool
 
 from .conftest import flat, wavy  # type: ignore[import-not-found]
@@ -119,9 +119,9 @@ def test_links_turn_only_across_and_above_everything() -> None:
         assert min(point[2] for point in rim) >= 25.0
 
 
-def _beside_only(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray, over: bool,
-                 rapid: bool) -> np.ndarray:
-    return np.full(len(start), not over)
+def _beside_only(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray,
+                 motion: LinkMotion) -> np.ndarray:
+    return np.full(len(start), motion is not LinkMotion.CROSSING)
 
 
 def test_a_stroke_beside_is_reached_straight_over_with_an_axis_between() -> None:
@@ -142,8 +142,9 @@ def test_a_stroke_beside_is_reached_straight_over_with_an_axis_between() -> None
 def test_links_are_as_low_as_they_may() -> None:
     asked: list[tuple[float, bool]] = []
 
-    def clear(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray, over: bool,
-              rapid: bool) -> np.ndarray:
+    def clear(start: np.ndarray, end: np.ndarray, before: np.ndarray, after: np.ndarray,
+              motion: LinkMotion) -> np.ndarray:
+        over = motion is LinkMotion.CROSSING
         asked.append((float(start[0, 2]) if len(start) else 0.0, over))
         return np.array([z > 6.0 if over else z > 2.0 for z in end[:, 2]], dtype=bool)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from benchmarks._part_samples import PartSamples
 from benchmarks._postures import hemisphere, outline_of
-from benchmarks.out_of_reach import Attack, Claim, Place, claims_of, draw_claimed, draw_unclaimed, rack
+from benchmarks.out_of_reach import Attack, Claim, Place, claims_of, draw_places, rack
 
 import toolaxis as ta
 from toolaxis.regions.out_of_reach import prove_out_of_reach
@@ -39,7 +39,7 @@ def claims(pit: Part) -> list[Claim]:
 
 def test_no_tool_reaches_what_is_claimed_of_a_pit(pit: Part, claims: list[Claim]) -> None:
     attack, rng = Attack(pit, TOOLS, axes=AXES), np.random.default_rng(SEED)
-    places = [place for claim in claims if claim.area > 0 for place in draw_claimed(claim, 2, rng)]
+    places = [place for claim in claims if claim.area > 0 for place in draw_places(claim, 2, rng)]
     assert sum(claim.area > 0 for claim in claims) == 5, "the four roundings, and the lower half of a wall"
     for place in places:
         assert attack.reach(place).lack > 0, (place.face.label, place.point)
@@ -51,9 +51,9 @@ def test_a_claim_that_is_wrong_is_contradicted(pit: Part, claims: list[Claim]) -
     assert top.area == 0.0
     u0, u1, v0, v1 = top.face.bounds
     wrong = top._replace(area=top.face.area, rectangles=np.array([[u0, u1, v0, v1]]))
-    assert all(attack.reach(place).lack <= 0 for place in draw_claimed(wrong, 2, rng))
+    assert all(attack.reach(place).lack <= 0 for place in draw_places(wrong, 2, rng))
     longer = Attack(pit, tuple(ta.Tool.ball(size, stickout=60, holder=HOLDER) for size in (1.8, 4)), axes=AXES)
-    lost = [place for claim in claims if claim.area > 0 for place in draw_claimed(claim, 1, rng)]
+    lost = [place for claim in claims if claim.area > 0 for place in draw_places(claim, 1, rng)]
     assert any(longer.reach(place).lack <= 0 for place in lost), "with other tools the same places are reached"
 
 
@@ -61,7 +61,7 @@ def test_what_is_reached_passes_the_exact_distance(pit: Part, claims: list[Claim
     """The posture that brute force finds is measured with the tool's exact distance, on points of its own."""
     attack, rng = Attack(pit, TOOLS, axes=AXES), np.random.default_rng(SEED)
     samples = PartSamples.of(pit)
-    places = [place for claim in claims for place in draw_unclaimed(claim, 1, rng)]
+    places = [place for claim in claims for place in draw_places(claim, 1, rng, claimed=False)]
     checked = 0
     for place in places:
         found = attack.reach(place)
@@ -103,7 +103,7 @@ def test_no_tool_of_the_rack_reaches_what_is_claimed_of_parts_of_others(shared_p
     part, tools = ta.load(shared_parts / name), rack()
     claims, rng = claims_of(part, tools, 200_000), np.random.default_rng(SEED)
     attack = Attack(part, tools, axes=100)
-    places: list[Place] = [place for claim in claims if claim.area > 0 for place in draw_claimed(claim, 1, rng)][:3]
+    places: list[Place] = [place for claim in claims if claim.area > 0 for place in draw_places(claim, 1, rng)][:3]
     assert places, "some of its fillets are too tight"
     for place in places:
         assert attack.reach(place).lack > 0, (place.face.label, place.point)

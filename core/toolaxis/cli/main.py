@@ -72,6 +72,16 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                               description="Find the best fixed tool axis for each face, with its passes. "
                                           "Lengths in mm, angles in degrees.")
     sub.add_argument("part", metavar="PART.step")
+    _add_tool_options(sub)
+    _add_face_options(sub)
+    _add_division_options(sub)
+    _add_search_options(sub)
+    _add_other_options(sub)
+    sub.set_defaults(module="toolaxis.cli.plan")
+
+
+def _add_tool_options(sub: _Parser) -> None:
+    """The tools, the scallop height and the tolerance."""
     sub.add_argument("--tool", action="append", default=[], metavar="TOOL",
                      help=f"{short_forms('')} (diameter x corner radius x degrees), a TOML or .fctb file, or a name "
                           "from resources/tools; may be repeated (default: the general rack)")
@@ -83,6 +93,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help=f"greatest scallop height (default: {SCALLOP:g})")
     sub.add_argument("--tolerance", type=float, metavar="MM",
                      help="machining tolerance: how far the finished surface may be cut too deep (default: 0.01)")
+
+
+def _add_face_options(sub: _Parser) -> None:
+    """The faces, the folder, and what stands around."""
     sub.add_argument("--faces", metavar="LIST",
                      help="face numbers such as 3,5-8, or all; sculptured faces by default; 3+4,7 machines or divides "
                           "faces that continue each other smoothly as one, skins all that can be joined")
@@ -100,6 +114,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="side that is held in the clamping, in coordinates of the part: z<12.5, x>-3, or "
                           "plane:x,y,z,nx,ny,nz (a point of its plane, a direction into it); no tool goes there, and "
                           "what lies in it is not machined")
+
+
+def _add_division_options(sub: _Parser) -> None:
+    """How faces are divided, and the machine with its limits."""
     sub.add_argument("--regions", type=_count, metavar="N|auto",
                      help="sub-surfaces for each face, an axis each; auto: as many as pay")
     sub.add_argument("--orientations", type=_count, metavar="N|auto",
@@ -120,6 +138,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("--limits", default="", metavar="SPEC",
                      help="axes that are allowed: cone:0,0,1,45 (within 45 degrees of +z), "
                           "rotary:tilt=-5..110,turn=-360..360, several joined by +")
+
+
+def _add_search_options(sub: _Parser) -> None:
+    """How axes are found and passes lie."""
     sub.add_argument("--method", default=SPHERE, choices=tuple(strategy_named(INDEXED).methods),
                      help="how each sub-surface gets its axis: sphere (default), the whole hemisphere; sectors, the "
                           "projection planes and sectors of zhu2016; jerk, the rotary angles of --machine at which its "
@@ -152,6 +174,10 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
                           "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "
                           f"axis that moves is allowed {MOVING:.0f} times that (default: {LIMIT:.0f}, about half a "
                           "minute on one core)")
+
+
+def _add_other_options(sub: _Parser) -> None:
+    """Processes, rates, what is written, and moving axes."""
     sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
     sub.add_argument("--feedrate", type=float, metavar="MM/MIN",
                      help="for all tools (default: each tool's own, else 1000)")
@@ -168,7 +194,6 @@ def _add_plan(commands: "argparse._SubParsersAction[_Parser]") -> None:
     kept = [f"{one.name} (default: {1000 * one.roughness:g})" for one in known if one.roughness]
     sub.add_argument("--roughness", type=float, metavar="UM",
                      help=f"greatest Ra across the feed, micrometres, for the strategy {', '.join(kept)}")
-    sub.set_defaults(module="toolaxis.cli.plan")
 
 
 def _count(text: str) -> int | str:

@@ -201,10 +201,12 @@ def _divide_rectangles(rect: Array, turn: Array) -> Array:
     along = [turn[:, axis] > _ONE_WAY * turn[:, 1 - axis] for axis in (0, 1)]
     parts = np.empty((len(rect), 4, 4))
     number = np.arange(4)
-    for axis, place in ((0, number // 2), (1, number % 2)):
-        count = np.where(along[axis], 4, np.where(along[1 - axis], 1, 2))[:, None]
-        first = np.where(count == 4, number, np.where(count == 1, 0, place))
-        low, size = rect[:, 2 * axis, None], (rect[:, 2 * axis + 1] - rect[:, 2 * axis])[:, None]
-        parts[:, :, 2 * axis] = low + size * (first / count)
-        parts[:, :, 2 * axis + 1] = low + size * ((first + 1) / count)
+    for axis, place_of_two in ((0, number // 2), (1, number % 2)):
+        # The quarters are four along this parameter, one and the same range of it, or two by two.
+        four, one = along[axis][:, None], along[1 - axis][:, None]
+        count = np.where(four, 4, np.where(one, 1, 2))
+        place = np.where(four, number, np.where(one, 0, place_of_two))
+        low, high = rect[:, 2 * axis, None], rect[:, 2 * axis + 1, None]
+        parts[:, :, 2 * axis] = low + (high - low) * (place / count)
+        parts[:, :, 2 * axis + 1] = low + (high - low) * ((place + 1) / count)
     return parts.reshape(-1, 4)

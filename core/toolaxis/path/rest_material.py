@@ -230,18 +230,6 @@ class RestFinder:
         return tuple(sorted(told, key=lambda zone: -zone.area))
 
 
-def left_over(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float = 0.0,
-              walls: Callable[[Array], Bools] | None = None) -> tuple[Zone, ...]:
-    """Zones that the passes of one path leave higher than the scallop limit; see `RestFinder.find`.
-
-    Parameters
-    ----------
-    face, tool, path, scallop, allowance, walls
-        As for `RestFinder`.
-    """
-    return RestFinder(face, tool, scallop, allowance, walls).find(path)
-
-
 def _name_motions(starts: Array, ends: Array) -> list[bytes]:
     """A name for each motion, the same for either way along it."""
     turned = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))

@@ -67,6 +67,8 @@ def _lowest(solids: Array, axes: Array, held: HeldSide) -> Array:
     rise = -(axes @ held.normal)[:, None]
     across = np.sqrt(np.maximum(1.0 - rise**2, 0.0))
     flat, radius, _, sine, low, top, rim = solids.T
+    # The lower arc has the lowest place only while it has the plane's direction among its normals; a tool that leans
+    # farther has it on the rim at its top.
     arc = (low + radius) * rise - flat * across - radius
     end = top * rise - rim * across
     return np.asarray(np.where(rise >= sine, np.minimum(arc, end), end).min(axis=1))

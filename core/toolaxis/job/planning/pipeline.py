@@ -53,7 +53,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.shape.part import Part
 from toolaxis.strategies.inputs import check_strategy
-from toolaxis.strategies.strategy import INDEXED, Asked
+from toolaxis.strategies.strategy import INDEXED, Asked, Strategy
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
@@ -192,16 +192,13 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     UnsupportedGeometry
         When faces cannot be joined.
     """
-    if most_tools is not None and (isinstance(most_tools, bool) or not isinstance(most_tools, int) or most_tools < 1):
-        raise InvalidInput(f"most_tools is {most_tools!r}: it must be a whole number above zero")
+    _check_most_tools(most_tools)
     check_count(regions)
     check_count(orientations, "orientations")
     mounting, allowed = _machine(machine, limits, offset)
     rack = _rack(tool, float(scallop), (feedrate, spindle))
     cutter = rack.tools[0]
-    if objective is None:
-        timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
-        objective = "time" if timed else "length"
+    objective = _usual_objective(rack, mounting) if objective is None else objective
     limits_kept = Tolerance.of(tolerance)
     if least_lean is not None:
         limits_kept = replace(limits_kept, least_lean=float(least_lean))
@@ -245,12 +242,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
                                   *rack.warnings)
-    if held and given:
-        raise InvalidInput("a held side does not go with sub-surfaces given by hand: faces are cut where it begins; "
-                           "leave one of both out")
-    if held and chosen.in_layers:
-        raise InvalidInput(f"a held side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
-                           "leave one of both out")
+    if held:
+        _check_held_side(given, chosen)
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     chosen_faces = choose_faces(loaded, numbers)
     if loaded.allowances is not None:
@@ -271,6 +264,28 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     whole = faces is None and untouched and method in METHODS
     made = _plan_part(job, free, (whole, compare), progress)
     return _tell_apart(_order_operations(made, progress), free, in_clamping)
+
+
+def _check_most_tools(most_tools: int | None) -> None:
+    """That a greatest number of tools is one."""
+    if most_tools is not None and (isinstance(most_tools, bool) or not isinstance(most_tools, int) or most_tools < 1):
+        raise InvalidInput(f"most_tools is {most_tools!r}: it must be a whole number above zero")
+
+
+def _usual_objective(rack: ToolLibrary, mounting: Mounting | None) -> str:
+    """What is least unless it is said: time where tools are compared on a machine that states its limits."""
+    timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
+    return "time" if timed else "length"
+
+
+def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
+    """That a plan with a held side is one of which the faces may be cut where it begins."""
+    if given:
+        raise InvalidInput("a held side does not go with sub-surfaces given by hand: faces are cut where it begins; "
+                           "leave one of both out")
+    if chosen.in_layers:
+        raise InvalidInput(f"a held side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
+                           "leave one of both out")
 
 
 def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:

@@ -238,9 +238,10 @@ def _verdict_line(plan: Plan, verdict: Mapping[str, Any] | None) -> dict[str, st
 def _figures(plan: Plan) -> list[tuple[str, str]]:
     """The numbers that stand on top."""
     done = [op for op in plan.operations if op.done]
-    needed = [op for op in plan.operations if op.done or outcome_of([op], plan.blades) == "incomplete"]
+    needed = sum(op.done or outcome_of([op], plan.blades) == "incomplete" for op in plan.operations)
+    needed += sum(one.whole for one in plan.unplanned)
     moves = any(op.orientation.lead is not None for op in done)
-    return [("outcome", plan.outcome), ("sub-surfaces", f"{len(done)} of {len(needed)}"),
+    return [("outcome", plan.outcome), ("sub-surfaces", f"{len(done)} of {needed}"),
             ("orientations", "moving axes" if moves else str(plan.orientations)),
             ("passes", str(sum(op.orientation.passes for op in done))), ("cutting length", f"{plan.length:.1f} mm"),
             ("with links", f"{plan.length + plan.travel:.1f} mm"), ("time", f"{clock(plan.seconds)} min"),

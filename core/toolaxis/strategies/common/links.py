@@ -7,6 +7,7 @@ down along it.  As high as `Swivelling.height` asks, the whole tool is above eve
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,17 @@ class MovingCuttingMove(CuttingMove):
     axis: Array
 
 
+class LinkMotion(Enum):
+    """What a motion of a link does, and so what it has to keep clear of."""
+
+    #: Straight over to a stroke beside, at feed rate: it may cut stock.
+    AT_FEED = "feed"
+    #: Up from a stroke, or down to one, at rapid traverse: clear of stock.
+    LIFT = "lift"
+    #: Across at rapid traverse: clear of what passes leave on the skin too.
+    CROSSING = "crossing"
+
+
 @dataclass(frozen=True, eq=False)
 class MovingLinks:
     """How strokes with moving axes are joined.
@@ -62,15 +74,14 @@ class MovingLinks:
     tool : Tool
         What has to be above that height.
     clear : callable, optional
-        Takes the tips at both ends of links and the axes there, (k, 3) each, whether they are the crossing itself
-        rather than the way up or down, and whether they are run at rapid traverse, and answers which are free on the
-        whole way, (k,) bool; all cross above everything without it.
+        Takes the tips at both ends of links and the axes there, (k, 3) each, and which motions they are, and answers
+        which are free on the whole way, (k,) bool; all cross above everything without it.
     """
 
     linking: Linking
     up: Array
     tool: Tool
-    clear: Callable[[Array, Array, Array, Array, bool, bool], Bools] | None = None
+    clear: Callable[[Array, Array, Array, Array, LinkMotion], Bools] | None = None
 
     def height(self, axes: Array) -> float:
         """Height along `up` of the tip at which all of the tool is above everything with any of the axes, mm.
@@ -174,8 +185,8 @@ def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: 
     middle = np.asarray(unit(before + after)) if len(left) else before
     for share in ROOFS:
         some = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * middle[left]
-        free = how.clear(ends[left], some, before[left], middle[left], False, False)
-        free &= how.clear(some, begins[left], middle[left], after[left], False, False)
+        free = how.clear(ends[left], some, before[left], middle[left], LinkMotion.AT_FEED)
+        free &= how.clear(some, begins[left], middle[left], after[left], LinkMotion.AT_FEED)
         over[left[free] + 1] = some[free]
         left = left[~free]
     return over
@@ -197,8 +208,8 @@ def _lower(tops: tuple[Array, Array], low: tuple[list[Array], list[Array]], axes
         left, high = left[lower], (high[0][lower], high[1][lower])
         if not len(left):
             return
-        free = how.clear(high[0], high[1], before[left], after[left], True, True)
-        free &= how.clear(starts[left], high[0], before[left], before[left], False, True)
-        free &= how.clear(stops[left], high[1], after[left], after[left], False, True)
+        free = how.clear(high[0], high[1], before[left], after[left], LinkMotion.CROSSING)
+        free &= how.clear(starts[left], high[0], before[left], before[left], LinkMotion.LIFT)
+        free &= how.clear(stops[left], high[1], after[left], after[left], LinkMotion.LIFT)
         up[left[free]], down[left[free] + 1] = high[0][free], high[1][free]
         left = left[~free]

@@ -24,6 +24,7 @@ from toolaxis.path.links import least_rise
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.link_heights import OVER
 from toolaxis.search.path_check import COMPONENTS, PathCheck, greatest_depth, link_into_stock, worst_motion
+from toolaxis.strategies.common.links import LinkMotion
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -141,10 +142,9 @@ class MovingLinkClearance:
         if not any(group.stock > 0 for group in self.groups):
             return None
         return lambda tips, axes, most: least_rise(
-            tips, axes, most, lambda start, end, up: self.clear(start, end, up, up, False, rapid=True))
+            tips, axes, most, lambda start, end, up: self.clear(start, end, up, up, LinkMotion.LIFT))
 
-    def clear(self, start: Array, end: Array, before: Array, after: Array, across: bool,
-              rapid: bool = True) -> Bools:
+    def clear(self, start: Array, end: Array, before: Array, after: Array, motion: LinkMotion) -> Bools:
         """Whether links are free, (k,): they keep their distances, and where they cross `over` from the skin too.
 
         Parameters
@@ -153,15 +153,12 @@ class MovingLinkClearance:
             Tips, mm.
         before, after : (k, 3) array
             Axes there.
-        across : bool
-            Whether they cross.
-        rapid : bool
-            Whether they are run at rapid traverse, and have to clear stock.
+        motion : LinkMotion
         """
         free = np.ones(len(start), dtype=bool)
         for group in self.groups:
-            required = group.required_on_links if rapid or across else group.required.copy()
-            if across and group.role != OTHER:
+            required = group.required.copy() if motion is LinkMotion.AT_FEED else group.required_on_links
+            if motion is LinkMotion.CROSSING and group.role != OTHER:
                 required[0] = max(self.allowance + self.over, group.rapid)
             some = np.flatnonzero(free)
             free[some] = keeps_distance(self.tool, group, PathMotions(start, end, before, after).rows(some), required)
