@@ -11,6 +11,7 @@ from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, segme
 from toolaxis.feasibility.interference import COARSE, FINE
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Violation
+from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
@@ -60,7 +61,7 @@ class PathCheck:
 
 
 def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *, most: float = 20.0,
-          progress: Progress = NO_PROGRESS) -> PathCheck:
+          known: Array | None = None, progress: Progress = NO_PROGRESS) -> PathCheck:
     """Judge every motion of a path with one fixed axis.
 
     Measuring ends with what is known where a motion needs too many cells, and may then fall short of what deciding has
@@ -76,6 +77,9 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         Stock left on the skin, mm.
     most : float
         Clearances beyond this are not told apart, mm.
+    known : (k, 3, 3) array, optional
+        Motions with the same axis that were proven to keep the same limits, see `proven_motions`: those of a long path
+        that are among them are not looked at again.
     progress : Progress
 
     Returns
@@ -88,18 +92,23 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    new = np.arange(len(moves))
     if len(moves) > _LONG:
+        if known is not None:
+            new = np.flatnonzero(~_are_among(moves, known))
         refused = _refuse_early(tool, groups, moves)
         if refused is not None:
             return PathCheck(refused)
-        allow(_ALLOWED * len(moves))
+        allow(_ALLOWED * len(new))
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     nearest: dict[int, float] = {}
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
         if group.role == OTHER:
-            rows = _find_blocked(tool, group, moves, group.required)
+            rows = new[_find_blocked(tool, group, moves[new], group.required)]
+        elif len(moves) > _LONG:
+            rows, nearest[number] = new[_find_by_parts(tool, group, moves[new])], float(group.required[0])
         else:
             rows, nearest[number] = _measure_and_find(tool, group, moves, allowance if group.role == SKIN else 0.0)
         into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
@@ -116,21 +125,36 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         return PathCheck(witness, blocked=np.flatnonzero(blocked))
     gouge = 0.0
     clearance: dict[str, float] = {}
-    known = {"cutter", *tool.outlines}
+    present = {"cutter", *tool.outlines}
     for number, group in enumerate(groups):
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role != OTHER:
             gouge = max(gouge, _depth(tool, group, nearest[number], allowance if group.role == SKIN else 0.0))
-        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in known and (c > 0 or group.role == OTHER))
+        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in present and (c > 0 or group.role == OTHER))
         for c, value in _least(tool, group, moves, asked, most).items():
             name = COMPONENTS[c]
             clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
     return PathCheck(None, gouge, clearance)
 
 
+def proven_motions(path: ToolPath, proof: PathCheck) -> Array:
+    """The motions of a path, (k, 3, 3), that a proof accepted or refused few of, without those that it refused.
+
+    Parameters
+    ----------
+    path : ToolPath
+        With one fixed axis.
+    proof : PathCheck
+    """
+    moves = segment_motions(path.cl, path.axis[0])
+    if proof.witness is not None and not len(proof.blocked):
+        return moves[:0]
+    return np.delete(moves, proof.blocked, axis=0)
+
+
 def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
     """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
-    some = moves[::len(moves) // _SPREAD]
+    some = moves[::len(moves) // _SPREAD + 1]
     for group in groups:
         rows = _find_blocked(tool, group, some, group.required)
         if len(rows) > _SURELY * FEW * len(some):
@@ -167,19 +191,29 @@ def _measure_and_find(tool: Tool, group: CheckSurfaces, moves: Array,
                       allowance: float) -> tuple[NDArray[np.intp], float]:
     """The motions that are not proven to keep their distances from a skin, and the least bound of the cutter's.
 
-    The cutter's distances are told in the end: where they suffice, it need not be decided besides whether they do.  Of
-    a long path it is only decided, which takes a third of the time: it goes no deeper than it may.
+    The cutter's distances are told in the end: where they suffice, it need not be decided besides whether they do.
     """
-    others, cutter = group.required.copy(), group.required.copy()
-    others[0], cutter[1:] = -np.inf, -np.inf
-    doubtful, nearest = np.arange(len(moves)), float(cutter[0])
-    if len(moves) <= _LONG:
-        distances = _cutter_distances(tool, group, moves, allowance)
-        doubtful, nearest = np.flatnonzero(distances < cutter[0]), float(distances.min())
+    distances = _cutter_distances(tool, group, moves, allowance)
+    doubtful = np.flatnonzero(distances < group.required[0])
     blocked = np.zeros(len(moves), dtype=bool)
-    blocked[_find_blocked(tool, group, moves, others)] = True
-    blocked[doubtful[_find_blocked(tool, group, moves[doubtful], cutter)]] = True
-    return np.flatnonzero(blocked), nearest
+    blocked[_find_blocked(tool, group, moves, np.array([-np.inf, *group.required[1:]]))] = True
+    blocked[doubtful[_find_blocked(tool, group, moves[doubtful], group.required)]] = True
+    return np.flatnonzero(blocked), float(distances.min())
+
+
+def _find_by_parts(tool: Tool, group: CheckSurfaces, moves: Array) -> NDArray[np.intp]:
+    """The motions of a long path that are not proven to keep their distances from a skin.
+
+    How deep the cutter goes is not told, only that it goes no deeper than it may: that takes a third of the time.
+    """
+    parts = np.array([-np.inf, *group.required[1:]]), np.array([group.required[0], -np.inf, -np.inf])
+    return np.unique(np.concatenate([_find_blocked(tool, group, moves, part) for part in parts]))
+
+
+def _are_among(moves: Array, others: Array) -> NDArray[np.bool_]:
+    """Which motions (n, 3, 3) are among others, to the last digit, (n,)."""
+    known = {row.tobytes() for row in others[:, :2]}
+    return np.fromiter((row.tobytes() in known for row in moves[:, :2]), dtype=bool, count=len(moves))
 
 
 def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
@@ -195,8 +229,8 @@ def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Arra
     if group.role == OTHER or np.isneginf(required[0]):  # on its skin a cutter is too near to be told about so
         for count in _TOGETHER:
             left = left[~_keep_together(tool, group, moves[left], table, count)]
-    found = keeps_limits(group.cells, tool, moves[left], table)
-    return left[found.blocked >= 0]
+    found = in_blocks(lambda some: keeps_limits(group.cells, tool, some, table).blocked, moves[left])
+    return left[found >= 0]
 
 
 def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, count: int) -> NDArray[np.bool_]:
@@ -279,16 +313,20 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
         return {}
     asked, best = _only(group, components), np.full(3, most + _ROUGH)
     if len(moves) > _LONG:
-        spread = _least(tool, group, moves[::len(moves) // _SPREAD], components, most)
-        table = asked + np.array([spread.get(c, 0.0) for c in range(3)])
+        best = _lower(tool, group, moves[::len(moves) // _SPREAD + 1], asked, best)
         for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
-            moves = moves[~_keep_together(tool, group, moves, table, count)]
-        best = np.array([spread.get(c, most) for c in range(3)]) + _ROUGH
+            moves = moves[~_keep_together(tool, group, moves, asked + best - _ROUGH, count)]
+    best = _lower(tool, group, moves, asked, best)
+    return {c: float(best[c]) - _ROUGH for c in components}
+
+
+def _lower(tool: Tool, group: CheckSurfaces, moves: Array, asked: Array, best: Array) -> Array:
+    """Bounds (3,) of distances found so far, lowered to those of further motions; asked as `_only` gives it."""
     if not len(moves):
-        return {c: float(best[c]) - _ROUGH for c in components}
+        return best
     order = np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
     for first in range(0, len(order), _BATCH):
         least = lower_bounds(group.cells, tool, moves[order[first:first + _BATCH]], best, _ROUGH,
                              asked).lower.min(axis=0)
         best = np.where(least < best - _ROUGH, least, best)
-    return {c: float(best[c]) - _ROUGH for c in components}
+    return best
