@@ -57,7 +57,7 @@ def test_near_places_that_are_left_contacts_are_not_judged_but_passes_are_cut_ou
     own = fixed_axis.task(face, TOOL, SCALLOP).feasibility
     left = LeftPlaces(np.array([[*AT, -0.5]]), 20.0)
     feasible = fixed_axis.replace(own, left=left)
-    middle = (AT + [1.5, 0.0])[None], np.array([[60.0, 100.0]])
+    middle = np.array([[AT[0] + 1.5, AT[1]]]), np.array([[60.0, 100.0]])
     assert own.worst(axis, own.contacts(middle[0], 0)) is not None
     assert not len(feasible.contacts(middle[0], 0).uv) and len(feasible.contacts(middle[1], 0).uv)
     assert own.reach(middle[0], axis)[0]  # a free axis is taken to be free there
