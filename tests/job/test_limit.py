@@ -15,7 +15,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.plan.document import plan_document, plan_from
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.shape.bounding.bounding_tree import forest
-from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, allow_proof, limit_work, spend, up_to
+from toolaxis.work import LIMIT, UNIT, Budget, OutOfWork, allow, allow_proof, limit_work, spend, up_to
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1, stickout=50, holder=[(10, 0), (10, 40)])
@@ -174,3 +174,13 @@ def test_the_command_and_batches_take_a_limit(tmp_path: Path) -> None:
     (tmp_path / "part.step").write_text("ISO-10303-21;\n")
     jobs = [{"part": str(tmp_path / "part.step"), "tool": "ball:6", "scallop": 0.1, "limit": 123}]
     assert read_jobs(jobs)[0].spec.inputs.limit == 123.0
+
+
+def test_further_work_is_allowed_to_what_was_found_and_ends_with_it():
+    with limit_work(Budget(1.0)) as budget:
+        allow(2 * UNIT)
+        spend(2.5 * UNIT)
+        assert budget.done == 2.5
+        with pytest.raises(OutOfWork, match="work limit of 1:"):
+            spend(UNIT)
+    allow(UNIT)  # nobody limits anything here

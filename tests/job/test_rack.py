@@ -14,6 +14,7 @@ from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document
+from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.rack import _merge, _Screen, _Waiting
 from toolaxis.job.planning.sub_surfaces import Target
@@ -343,3 +344,28 @@ def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
     made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
     assert [tool.name for tool in made.tools] == ["ball:10"]
     assert any("left out: its radius is not above the scallop height" in why for why in made.part.warnings)
+
+
+def test_very_long_cutting_is_told_before_it_is_planned(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rack_planning, "_VERY_LONG", 1.0)
+    stages: list[str] = []
+    made = ta.plan(trough(), ["ball:8", "ball:3"], 0.1, workers=1,
+                   progress=Progress(lambda stage, done, total: stages.append(stage)))
+    said = [words for words in made.part.warnings if words.startswith("cutting takes about 0 h: ")]
+    assert len(said) == 1 and "at a scallop height of 0.1 mm" in said[0]
+    told = next(k for k, stage in enumerate(stages) if "h of cutting" in stage)
+    assert not any("search for the axis" in stage for stage in stages[:told])
+
+
+def test_the_largest_of_what_waits_for_a_tool_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[list[float]] = []
+    pieces = PlanningJob.plan_pieces
+
+    def spied(self: PlanningJob, targets: list[Target], progress: Progress) -> Plan:
+        seen.append([target.face.area for target in targets])
+        return pieces(self, targets, progress)
+
+    monkeypatch.setattr(PlanningJob, "plan_pieces", spied)
+    ta.plan(walled(), ["ball:8", "ball:3"], 0.1, faces="all", workers=1)
+    assert any(len(row) > 1 for row in seen)
+    assert all(row == sorted(row, reverse=True) for row in seen)

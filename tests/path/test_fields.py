@@ -225,3 +225,14 @@ def test_faces_that_close_or_have_a_pole_are_refused_with_the_remedy() -> None:
     face = wavy(0)
     with pytest.raises(UnsupportedGeometry, match="passes in a field along u turn back on face 1"):
         LevelChart(face, "u", field_of(face, 0))
+
+
+def test_the_ideal_length_needs_no_places_off_the_face() -> None:
+    whole_face = wavy(4)
+    u0, u1, v0, v1 = whole_face.bounds
+    loop = np.array([[0.3, 0.3], [0.7, 0.35], [0.6, 0.8], [0.25, 0.6]])
+    trimmed = whole_face.trimmed((np.array([u0, v0]) + loop * np.array([u1 - u0, v1 - v0]),))
+    cut = Cut(BALL, LEAN, H)
+    whole, inside = (tabulate_directions(trimmed, cut, 16, only_inside=only) for only in (False, True))
+    assert len(inside.uv) == trimmed.contains(whole.uv).sum() < len(whole.uv)
+    assert inside.ideal_length == pytest.approx(whole.ideal_length, rel=1e-12)

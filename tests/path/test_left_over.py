@@ -7,6 +7,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed, distance_to_removed_numpy
 from toolaxis.numeric.polygons import inside, slabs
+from toolaxis.path import rest_material
 from toolaxis.path.rest_grid import sample_grid
 from toolaxis.path.rest_material import (
     FACTOR,
@@ -195,3 +196,44 @@ def test_what_is_known_of_whole_cells_is_what_their_nodes_say(made: tuple[FacePr
     _, plain = sample_grid(job.worth.face, high, 0.06, lambda middle, around: np.zeros(len(middle), dtype=bool))
     assert ((values > 0) == (plain > 0)).all()
     assert (values == 1).sum() > 0.5 * (plain > 0).sum() > 5000
+
+
+def test_distances_from_a_path_of_many_groups_of_motions_are_those_of_the_plain_twin():
+    rng = np.random.default_rng(5)
+    t = np.linspace(0, 1, 4001)
+    line = np.column_stack([100 * t, 12 * np.sin(40 * t), 3 * np.cos(25 * t)])
+    points = rng.uniform([-5, -16, -5], [105, 16, 9], (72, 3))
+    axis = np.array([0.1, 0.2, 1.0]) / np.linalg.norm([0.1, 0.2, 1.0])
+    found = distance_to_removed(TOOL, axis, line[:-1], line[1:], points, 4.0)
+    plain = distance_to_removed_numpy(TOOL, axis, line[:-1], line[1:], points, 4.0)
+    assert np.abs(found - plain).max() < 1e-5 and (plain < 4.0).any() and (plain == 4.0).any()
+
+
+def test_motions_are_made_ready_once_however_often_it_is_asked(made, monkeypatch):
+    job, path = made
+    calls, sweep = [], rest_material.sweep_motions
+    monkeypatch.setattr(rest_material, "sweep_motions", lambda *args: calls.append(1) or sweep(*args))
+    high = Excess(job.worth.face, TOOL, path, SCALLOP)
+    for _ in range(3):
+        high(job.worth.face.grid(4, 4))
+    assert len(calls) == 1
+
+
+def test_a_cell_is_left_all_over_where_its_middle_is_farther_from_the_cut_than_it_reaches(made):
+    job, path = made
+    face = job.worth.face
+    high = Excess(face, TOOL, path, FACTOR * SCALLOP)
+    middle = face.grid(25, 25)
+    size = np.array([face.bounds[1] - face.bounds[0], face.bounds[3] - face.bounds[2]]) / 50
+    corners = np.array([[-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0]])
+    around = middle[:, None] + corners * size
+    whole = high.whole(middle, around)
+    assert whole.any() and not whole.all()
+    for k in np.flatnonzero(whole):
+        assert (high(around[k]) > 0).all() and high(middle[k][None])[0] > 0
+    raised = high._raise_points(middle)
+    reach = 1.2 * np.linalg.norm(high._raise_points(around.reshape(-1, 2)).reshape(-1, 8, 3) - raised[:, None],
+                                 axis=2).max(axis=1)
+    cutting = path.kind[1:] == Motion.CUT
+    away = distance_to_removed(TOOL, path.axis[0], path.cl[:-1][cutting], path.cl[1:][cutting], raised)
+    assert (whole == (away >= reach)).all()

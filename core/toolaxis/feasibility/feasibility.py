@@ -4,7 +4,8 @@ Screening looks at a few contacts and may only err towards "free"; proving looks
 normals between them, and at last at every motion of the passes really made.
 
 A contact at which the cutter would come too near to a wall that is less than one cutter diameter away, or gouge a face
-that continues the machined one, is left to a clean-up tool; anything else that is in the way forbids the axis.
+that continues the machined one, is left to a clean-up tool; anything else that is in the way forbids the axis, but at
+few places that are given.
 """
 
 from dataclasses import dataclass, field, replace
@@ -18,6 +19,7 @@ from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.contact.placement import tips
 from toolaxis.feasibility.check_points import CheckPoints, around, contacts_at
 from toolaxis.feasibility.interference import COARSE, InterferenceScene, stands_free, trouble_at
+from toolaxis.feasibility.left_places import NOTHING_LEFT, LeftPlaces
 from toolaxis.feasibility.normal_cone import NormalField
 from toolaxis.feasibility.point_check import deepest
 from toolaxis.feasibility.surroundings import OTHER, ROLES, SKIN, CheckSurfaces
@@ -67,6 +69,8 @@ class Feasibility:
         Parameters of contacts that screening looks at besides its own.
     learnt : (m, 3) array
         Points of the skin that screening holds against axes besides its own.
+    left : LeftPlaces
+        Near them nothing that is in the way forbids an axis: what is is cut out of the passes.
     """
 
     face: Face
@@ -77,6 +81,7 @@ class Feasibility:
     allowance: float = 0.0
     watched: Array | None = None
     learnt: Array = field(default_factory=lambda: np.empty((0, 3)))
+    left: LeftPlaces = NOTHING_LEFT
 
     @cached_property
     def normals(self) -> NormalField:
@@ -110,7 +115,7 @@ class Feasibility:
         new = self._with(("normals", "dense", "cloud"),
                          watched=rows if self.watched is None else np.concatenate([self.watched, rows]))
         if "sparse" in self.__dict__:
-            more = zip(self.sparse, self._contacts(rows, 0), strict=True)
+            more = zip(self.sparse, self.contacts(rows, 0), strict=True)
             new.__dict__["sparse"] = CheckPoints(*(np.concatenate(both) for both in more))
         return new
 
@@ -133,19 +138,36 @@ class Feasibility:
     def sparse(self) -> CheckPoints:
         """Contacts for screening: a coarse grid, points along the border, and the most concave places."""
         grid = self.face.grid(5, 5)
-        fine = self.face.grid(24, 24)
-        bent = fine[np.argsort(-round_significant(self.face.curvature(fine).k1), kind="stable")[:6]]
-        rows = [grid, bent, around(self.face, 24)]
-        return self._contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
+        rows = [grid, self.corners, around(self.face, 24)]
+        return self.contacts(np.concatenate([*rows, self.watched] if self.watched is not None else rows), len(grid))
 
     @cached_property
     def dense(self) -> CheckPoints:
         """Contacts for proving: a fine grid, and points along the border."""
         grid = self.face.grid(_DENSE, _DENSE)
-        return self._contacts(np.concatenate([grid, around(self.face, 6 * _DENSE)]), len(grid))
+        return self.contacts(np.concatenate([grid, around(self.face, 6 * _DENSE)]), len(grid))
 
-    def _contacts(self, uv: Array, weighed: int) -> CheckPoints:
-        return contacts_at(self.face, uv, weighed, self.walls, 2 * self.tool.radius + self.tolerance.cutter_clearance)
+    @cached_property
+    def corners(self) -> Array:
+        """Parameters of the most concave places, (6, 2)."""
+        fine = self.face.grid(24, 24)
+        return fine[np.argsort(-round_significant(self.face.curvature(fine).k1), kind="stable")[:6]]
+
+    def contacts(self, uv: Array, weighed: int) -> CheckPoints:
+        """Contacts of the face, those near places aside that are left.
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+        weighed : int
+            How many of the first ones are an even grid, for which the area counts.
+        """
+        reach = 2 * self.tool.radius + self.tolerance.cutter_clearance
+        every = contacts_at(self.face, uv, weighed, self.walls, reach)
+        if not len(self.left.points):
+            return every
+        kept = ~self.left.near(every.point)
+        return CheckPoints(every.uv[kept], every.point[kept], every.normal[kept], every.share[kept], every.near[kept])
 
     @cached_property
     def neighbours(self) -> tuple[Face, ...]:
@@ -370,7 +392,7 @@ class Feasibility:
         Notes
         -----
         Contacts on the face are looked at for walls, obstacles and faces that continue it: for all else a free axis is
-        free there.
+        free there, but near places that are left.
         """
         rows, t = as_rows(uv, 2, "uv"), unit(as_rows(axis, 3, "axis")[0])
         normal, point = self.face.normal(rows), self.face.evaluate(rows).point
@@ -379,7 +401,8 @@ class Feasibility:
         inside = self.face.contains(rows)
         within = ROLES if self.neighbours else (OTHER,)
         on_the_face = (True, ROLES) if itself else (False, within)
-        for part, asked in ((good & inside, on_the_face), (good & ~inside, (True, ROLES))):
+        near = np.zeros_like(inside) if itself else inside & self.left.near(point)
+        for part, asked in ((good & inside & ~near, on_the_face), (good & (near | ~inside), (True, ROLES))):
             if part.any() and any(group.role in asked[1] for group in self.groups):
                 good[part] = stands_free(self._scene, tips(point[part], normal[part], t, self.tool, self.allowance),
                                          t, asked)

@@ -1,17 +1,19 @@
-"""Functions that work row by row, on long arrays: some rows at a time, so that what they need in between is small."""
+"""Functions of rows on long arrays: some rows at a time, so that what they need in between stays small."""
 
 from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Made = TypeVar("Made", bound=NDArray[Any])
 
 #: Rows at a time; fewer are taken in one piece.
 BLOCK = 50_000
 
 
-def in_blocks(function: Callable[..., Array], *arrays: Array, size: int = BLOCK) -> Array:
+def in_blocks(function: Callable[..., Made], *arrays: Array, size: int = BLOCK) -> Made:
     """What a function of rows makes of arrays.
 
     Parameters
@@ -32,5 +34,5 @@ def in_blocks(function: Callable[..., Array], *arrays: Array, size: int = BLOCK)
     count = len(arrays[0])
     if count <= size:
         return function(*arrays)
-    return np.concatenate([function(*(rows[first:first + size] for rows in arrays))
+    return np.concatenate([function(*(rows[first:first + size] for rows in arrays))  # type: ignore[return-value]
                            for first in range(0, count, size)])

@@ -353,6 +353,6 @@ def tip_points(chart: Chart, cut: Cut, along: ArrayLike, step: ArrayLike) -> tup
     """
     uv = chart.uv(np.asarray(along, dtype=float), np.asarray(step, dtype=float))
     spend(_POINT * len(uv))
-    normal = chart.face.normal(uv)
-    point = chart.face.evaluate(uv).point
+    at = chart.face.evaluate(uv)
+    point, normal = at.point, chart.face.normal(uv, at)
     return point, tips(point, normal, cut.axes(chart.face, uv), cut.tool, cut.allowance), normal

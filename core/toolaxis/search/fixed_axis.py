@@ -11,6 +11,8 @@ from scipy.spatial import cKDTree
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
+from toolaxis.contact.clearance.queries import keeps_limits
+from toolaxis.contact.placement import tips
 from toolaxis.errors import Cancelled, InvalidInput, UnsupportedGeometry
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, CheckSurfaces, Obstacles, group_surroundings
@@ -33,6 +35,7 @@ from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.cost import MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.few_in_the_way import axes_worth_a_look, few_in_the_way
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
 from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
@@ -59,7 +62,7 @@ from toolaxis.search.messages import (
     tally,
     why_none,
 )
-from toolaxis.search.path_check import PathCheck, ProvenMotions, prove
+from toolaxis.search.path_check import PathCheck, ProvenMotions, prove, worst_motion
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
 from toolaxis.search.time_estimate import pace_of
@@ -67,7 +70,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance, ToleranceLike
 from toolaxis.tools.tool import Tool
-from toolaxis.work import OutOfWork, allow_proof, better_may_exist, up_to
+from toolaxis.work import OutOfWork, allow_proof, better_may_exist, is_out_of_work, up_to
 
 Array = NDArray[np.float64]
 
@@ -101,6 +104,8 @@ _ATTEMPTS = 4
 _SEARCHED, _ORDERED = 0.5, 0.4
 #: How often motions that the proof refuses are left out of passes before their axis is refused.
 _LEFT_OUT = 3
+#: How often a face for which there is no axis is tried again without few places that are in the way.
+_LEAVINGS = 2
 #: Where further passes make the cut so many times as long, the other feed is tried too.
 _LONGER = 1.02
 #: Places along a side of a grid that tells how much of its range a face fills, and places on the face that tell how
@@ -429,27 +434,53 @@ def find_axis(job: FaceProblem, method: str = "sphere",
 
 
 def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> tuple[Orientation, ToolPath | None]:
-    """The axis and its passes for passes of one pattern."""
+    """The axis and its passes for passes of one pattern; where few places refuse every axis, these are left."""
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
+    result, ledger = _search_once(job, method, first)
+    for _ in range(_LEAVINGS):
+        if not _may_leave_places(result[0], method):
+            break
+        try:
+            few = few_in_the_way(ledger.feasibility, axes_worth_a_look(ledger, first))
+        except OutOfWork:
+            break
+        if not len(few.points):
+            break
+        own = job.feasibility
+        job = replace(job, feasibility=replace(own, left=own.left.and_more(few)))
+        result, ledger = _search_once(job, method, first)
+    return result
+
+
+def _may_leave_places(found: Orientation, method: str) -> bool:
+    """Whether few places may be why no axis was found."""
+    lost = found.outcome in ("infeasible", "not_found") and not is_out_of_work(found.reasons)
+    return lost and METHODS[method].next_axis is next_in_lobe
+
+
+def _search_once(job: FaceProblem, method: str,
+                 first: Array) -> tuple[tuple[Orientation, ToolPath | None], AxisTable]:
+    """The axis and its passes as they are found at once, and all axes that were looked at."""
     ledger = AxisTable(job.feasibility, job.worth, job.progress, first)
     result: tuple[Orientation, ToolPath | None] | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
-            return Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",)), None
+            none = Orientation(None, outcome="infeasible", reasons=(f"infeasible: {impossible}",))
+            return (none, None), ledger
         result = _first_proven(job, ledger, method)
         if ledger.feasibility.limits is job.feasibility.limits or not METHODS[method].by_cost:
-            return result
+            return result, ledger
         ledger = AxisTable(ledger.feasibility, job.worth, job.progress, first)
-        return better_of(result, _first_proven(job, ledger, method))
+        return better_of(result, _first_proven(job, ledger, method)), ledger
     except Cancelled:
-        return Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
-                           evaluations=ledger.evaluations, map=ledger.map()), None
+        return (Orientation(None, outcome="cancelled", reasons=("cancelled by the user",),
+                            evaluations=ledger.evaluations, map=ledger.map()), None), ledger
     except OutOfWork as reason:
         if result is not None and result[0].axis is not None:
-            return _note_end(result)
-        return Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
-                           evaluations=ledger.evaluations, map=ledger.map()), None
+            return _note_end(result), ledger
+        return (Orientation(None, outcome="not_found", reasons=(str(reason), tally(ledger)),
+                            evaluations=ledger.evaluations, map=ledger.map()), None), ledger
 
 
 def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
@@ -601,6 +632,9 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     one : CountedAxis
     """
     feed = FEEDS[one.feed]
+    stuck = _way_up_blocked(job, one.axis)
+    if stuck is not None:
+        return CheckedCandidate(one, Orientation(None, feed), PathCheck(stuck), None)
     try:
         placed = job.laid(one.axis, feed)
     except (InvalidInput, UnsupportedGeometry) as reason:  # no strip between the counted places, or no planes here
@@ -630,6 +664,28 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
                         ideal=job.worth.ideal_length(one.axis), zones=made.zones)
     return CheckedCandidate(one, found, proof, path, made.longer)
+
+
+def _way_up_blocked(job: FaceProblem, axis: Array) -> Violation | None:
+    """What stands in the way up from every contact, as the opposite side of a duct; None where it is free from some.
+
+    Every path comes down along the axis to its first pass: to lay and prove all of them first would take long.
+    """
+    some = job.feasibility.sparse
+    if not len(some.uv):
+        return None
+    low = tips(some.point, some.normal, axis, job.worth.tool, job.worth.allowance) + CROSSING * axis
+    up = np.maximum(job.top(axis) - low @ axis, 0.0)[:, None] * axis
+    moves = np.stack([low + up / 2, up / 2, np.broadcast_to(axis, low.shape)], axis=1)
+    free = np.ones(len(moves), dtype=bool)
+    stuck = None
+    for group in job.groups:
+        kept = keeps_limits(group.cells, job.worth.tool, moves, np.tile(group.required, (len(group.faces), 1)))
+        blocked = kept.blocked >= 0
+        if stuck is None and blocked.any():
+            stuck = worst_motion(job.worth.tool, group, moves[blocked], group.required, group.required)
+        free &= ~blocked
+    return None if free.any() else stuck
 
 
 def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:

@@ -12,6 +12,7 @@ from toolaxis.contact.clearance.queries import keeps_limits, lower_bounds, segme
 from toolaxis.feasibility.interference import COARSE, FINE
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import CUTTER, GOUGE, Violation
+from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.messages import place
@@ -100,6 +101,16 @@ class ProvenMotions:
         known.update(names[k] for k in np.setdiff1d(new, blocked))
         return blocked
 
+    def count_new(self, names: list[bytes]) -> int:
+        """How many motions no figures are known of.
+
+        Parameters
+        ----------
+        names : list of bytes
+            Of all motions.
+        """
+        return sum(name not in self.measured for name in names)
+
     def measure(self, names: list[bytes], ask: Callable[[NDArray[np.intp]], PathCheck]) -> PathCheck:
         """The figures of a path; they are asked only for motions that were not measured yet.
 
@@ -150,13 +161,13 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
         When the user asked to stop.
     """
     moves = segment_motions(path.cl, path.axis[0])
+    known = known or ProvenMotions()
+    names = [row.tobytes() for row in moves[:, :2]]
     if len(moves) > _LONG:
         refused = _refuse_early(tool, groups, moves)
         if refused is not None:
             return PathCheck(refused)
-        allow(_ALLOWED * len(moves))
-    known = known or ProvenMotions()
-    names = [row.tobytes() for row in moves[:, :2]]
+        allow(_ALLOWED * known.count_new(names))
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
@@ -197,7 +208,7 @@ def _measure(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array, allowa
 
 def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
     """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
-    some = moves[::len(moves) // _SPREAD]
+    some = moves[::len(moves) // _SPREAD + 1]
     for group in groups:
         rows = _find_blocked(tool, group, some, group.required)
         if len(rows) > _SURELY * FEW * len(some):
@@ -232,12 +243,28 @@ def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
 
 def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
     """The motions that are not proven to keep distances (3,) from a group."""
+    if group.role == OTHER or np.isneginf(required[0]):
+        return _find_together(tool, group, moves, required)
+    # on its skin a cutter is too near to be told about so, shank and holder are not
+    others, cutter = np.array([-np.inf, *required[1:]]), np.array([required[0], -np.inf, -np.inf])
+    return np.union1d(_find_together(tool, group, moves, others), _find_singly(tool, group, moves, cutter))
+
+
+def _find_together(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
+    """The same, by balls around motions that follow each other first."""
+    if np.isneginf(required).all():
+        return np.empty(0, dtype=np.intp)
     table, left = np.tile(required, (len(group.faces), 1)), np.arange(len(moves))
-    if group.role == OTHER or np.isneginf(required[0]):  # on its skin a cutter is too near to be told about so
-        for count in _TOGETHER:
-            left = left[~_keep_together(tool, group, moves[left], table, count)]
-    found = keeps_limits(group.cells, tool, moves[left], table)
-    return left[found.blocked >= 0]
+    for count in _TOGETHER:
+        left = left[~_keep_together(tool, group, moves[left], table, count)]
+    return left[_find_singly(tool, group, moves[left], required)]
+
+
+def _find_singly(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
+    """The same, motion by motion."""
+    table = np.tile(required, (len(group.faces), 1))
+    found = in_blocks(lambda some: keeps_limits(group.cells, tool, some, table).blocked, moves)
+    return np.flatnonzero(found >= 0)
 
 
 def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, count: int) -> NDArray[np.bool_]:
@@ -320,15 +347,20 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
         return {}
     best = np.full(3, most + _ROUGH)
     if len(moves) > _LONG:
-        spread = _least(tool, group, moves[::len(moves) // _SPREAD], components, most)
-        table = _only(group, components) + np.array([spread.get(c, 0.0) for c in range(3)])
+        some = moves[::len(moves) // _SPREAD + 1]
+        best = _bound_least(tool, group, _sort_lowest_first(some), components, best, _ROUGH) + _ROUGH
+        table = _only(group, components) + best - _ROUGH
         for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
             moves = moves[~_keep_together(tool, group, moves, table, count)]
-        best = np.array([spread.get(c, most) for c in range(3)]) + _ROUGH
-    along = moves[0, 2] if len(moves) else np.zeros(3)
-    lowest_first = np.argsort(round_significant(moves[:, 0] @ along), kind="stable")
-    found = _bound_least(tool, group, moves[lowest_first], components, best, _ROUGH)
+    found = _bound_least(tool, group, _sort_lowest_first(moves), components, best, _ROUGH)
     return {c: float(found[c]) for c in components}
+
+
+def _sort_lowest_first(moves: Array) -> Array:
+    """Motions in the order of their heights along the axis."""
+    if not len(moves):
+        return moves
+    return np.asarray(moves[np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")])
 
 
 def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,

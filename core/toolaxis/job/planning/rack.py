@@ -42,6 +42,8 @@ WHOLE, MUCH = 0.8, 0.3
 APART_BELOW = 0.5
 #: Share of a face that is out of reach where no tool is asked for it.
 PROVEN = 0.99
+#: Cutting time above which it is told before it is planned, s.
+_VERY_LONG = 8 * 3600.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +137,7 @@ class RackPlanner:
         self._done += [fail_face(1, whole[k], smallest, why) for k, why in found.faults.items()]
         screened, chains = [whole[k] for k in found.results], list(found.results.values())
         choice = choose_tools(chains, CHANGE_SECONDS, self.most)
+        self._tell_time(sum(face.area for face in screened), sum(one.seconds for one in choice.chains), progress)
         self._used = set(choice.tools)
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
@@ -147,6 +150,18 @@ class RackPlanner:
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             tool = chain.tools[0] if chain.tools else max(allowed)
             self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain)))
+
+    def _tell_time(self, area: float, seconds: float, progress: Progress) -> None:
+        """Tell before all else where cutting will take very long: of a large part with small tools."""
+        if seconds <= _VERY_LONG:
+            return
+        hours, square = f"{seconds / 3600:.0f}", f"{area / 1e6:.3g}"
+        progress.report(f"choice of tools: about {hours} h of cutting", 1, 1)
+        height = self.jobs[0].inputs.scallop
+        words = (f"cutting takes about {hours} h: {square} m2 at a scallop height of {height:g} mm; larger tools "
+                 "(--tool) or a coarser --scallop shorten it")
+        part = self.jobs[0].part.with_warnings(words)
+        self.jobs = [replace(job, part=part) for job in self.jobs]
 
     def _refuse(self, face: Face, scene: ReachScene) -> Operation | None:
         """The operation of a face that no tool reaches; None where that is not proven."""
@@ -171,6 +186,7 @@ class RackPlanner:
             return True
         targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, in_pieces=one.in_pieces)
                    for label, one in now.items()]
+        targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, progress)
         stopped = made.outcome == "cancelled"
         for op in made.operations:
