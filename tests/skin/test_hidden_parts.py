@@ -85,6 +85,8 @@ def test_it_is_in_the_account_with_where_it_lies(planned: Plan, tmp_path: Path) 
     words = f"{hidden.area:.2f} mm2 of face 2 under face 1 at {at}"
     assert words in str(plan_table(planned).caption)
     assert any(words in one.text and one.level == "mind" for one in warnings_of(planned, None))
+    crumb = replace(planned, unplanned=(hidden._replace(area=0.002),))
+    assert "hidden" not in str(plan_table(crumb).caption), "0.00 mm2 tells nobody anything"
     place = next(one for one in list_open_places(planned) if one.label == "2")
     assert place.area == hidden.area and what_closes(place, 3.0).startswith("face 2 without face 1: it lies under that")
     with stage_folder(tmp_path / "plan") as stage:

@@ -10,6 +10,8 @@ from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 _NAMED = 20
 #: Area below which nothing is said of what stays open, mm^2.
 _TOLD = 0.05
+#: The same of a hidden part of a face, mm^2: it would read 0.00.
+_SHOWN = 0.005
 
 
 def describe_held(plan: Plan) -> str:
@@ -48,7 +50,7 @@ def describe_hidden(plan: Plan) -> str:
     ----------
     plan : Plan
     """
-    found = [one for one in plan.unplanned if one.why == HIDDEN]
+    found = [one for one in plan.unplanned if one.why == HIDDEN and one.area >= _SHOWN]
     if not found:
         return ""
     shown = [f"{one.area:.2f} mm2 of face {one.label} under face {one.beneath} at "
