@@ -137,7 +137,7 @@ def _contact_lines(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, 
     end = np.flatnonzero(kind[1:] == Motion.CUT) + 1
     used[end], used[end - 1] = True, True
     rows = np.flatnonzero(used)
-    uv, off = _contacts(face, profile, (tips[rows], axes[rows]), heights[0])
+    uv, off = find_contacts(face, profile, (tips[rows], axes[rows]), heights[0])
     point, good = np.full((len(tips), 3), np.nan), np.zeros(len(tips), dtype=bool)
     point[rows], good[rows] = face.evaluate(uv).point, off <= heights[1]
     end = end[good[end] & good[end - 1]]
@@ -149,8 +149,19 @@ def _contact_lines(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, 
     return np.concatenate([point[end - 1], before + share[:, None] * (after - before)])
 
 
-def _contacts(face: Face, profile: Profile, standing: tuple[Array, Array], allowance: float) -> tuple[Array, Array]:
-    """Parameters of the contacts of tips (n, 3) with axes (n, 3), and how far off the tips are that stand there, mm."""
+def find_contacts(face: Face, profile: Profile, standing: tuple[Array, Array], allowance: float) -> tuple[Array, Array]:
+    """Parameters of the contacts of tips with axes, (n, 2), and how far off the tips are that stand there, (n,) mm.
+
+    Parameters
+    ----------
+    face : Face
+        Where contacts lie beyond it, its surface is continued.
+    profile : Profile
+    standing : (n, 3) array, (n, 3) array
+        Tips, mm, and unit axes, in the order in which they are visited.
+    allowance : float
+        Stock left on the face, mm.
+    """
     from scipy.spatial import cKDTree
 
     tips, axes = standing
