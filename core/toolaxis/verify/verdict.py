@@ -38,6 +38,10 @@ SHARE, FACTOR = 0.999, 1.02
 #: Axes are the same up to this, rad: CL files have nine digits.
 SAME_AXIS = 1e-6
 
+#: Where a tool that stands on a face would be deeper than this share of the machining tolerance, or have no more than
+#: so much more than its clearance, mm, no pass is missed.
+_DEEP, _MORE = 0.5, 0.05
+
 NOT_CHECKED = "not checked"
 #: The cutter where links carry it, which must not cut.
 AT_RAPID = "cutter at rapid traverse"
@@ -407,10 +411,29 @@ def _find_step_over(task: VerificationTask, maps: tuple[SurfaceMap, ...]) -> Pas
     """The greatest distance of neighbouring passes, declared zones aside, where one is asked for."""
     if task.greatest_step_over == 0:
         return None
-    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing) for one in maps]
-    off = task.scallop + task.tolerance.gouge
-    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces, (task.allowance, off),
-                             task.greatest_step_over)
+    left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
+    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing, partial(left.holds, one.face))
+             for one in maps]
+    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces,
+                             (task.allowance, task.tolerance.gouge),
+                             task.greatest_step_over, partial(_may_stand, task))
+
+
+def _may_stand(task: VerificationTask, tips: Array, axes: Array) -> bool:
+    """Whether the tool could cut on a way: no less far from everything than it has to be, and a little more."""
+    kind = np.full(len(tips), int(Motion.CUT), dtype=np.int8)
+    skin = (*task.targets, *task.skin)
+    rest = (*skin, *task.touching, *task.surroundings)
+    cutter = cutter_solid(task.profile)
+    asked = [("cutter", cutter, skin, task.allowance - _DEEP * task.tolerance.gouge),
+             ("cutter", cutter, task.touching, -_DEEP * task.tolerance.gouge),
+             ("cutter", cutter, task.surroundings, task.tolerance.cutter_clearance + _MORE)]
+    asked += [(name, frustum_solids(outline, name), rest, _clearance_of(task, name) + _MORE)
+              for name, outline in task.outlines.items()]
+    asked += [("cutter", cutter, (face,), left + task.tolerance.cutter_clearance + _MORE)
+              for face, left in task.left_on if left > task.allowance]
+    return all(clearance((tips, axes, kind), (name, solids), faces, enough=max(need, 0.0)).distance >= need
+               for name, solids, faces, need in asked if faces)
 
 
 def _find_leads(task: VerificationTask) -> LeadCount | None:
