@@ -6,7 +6,6 @@ import numpy as np
 
 import toolaxis as ta
 from toolaxis.job.output.post import post_plan
-from toolaxis.machine.library import load_machine
 from toolaxis.report.html.page_tables import setting_rows
 from toolaxis.report.tables import plan_table
 
@@ -17,7 +16,7 @@ def test_all_of_it_stands_on_the_setup_sheet_and_below_the_table() -> None:
     plan = ta.plan(ta.Part.from_faces([face]), "ball:6", 0.1, machine="mikron-ucp-710", workers=1,
                    least_lean=radians(10), greatest_step_over=0.8, lead=1.5, allowance_on={1: 0.2})
     assert plan.outcome == "complete" and ta.verify(plan).passed
-    sheet = next(text for file, text in post_plan(plan, "fanuc", load_machine("mikron-ucp-710")).items()
+    sheet = next(text for file, text in post_plan(plan, "fanuc", plan.machine).items()
                  if file.startswith("setup"))
     for row in ("| allowance | 0.2 mm on face 1, 0 mm on all others |", "| greatest step-over | 0.8 mm |",
                 "| least lean of ball ends | 10 deg from the normal at every contact |",
