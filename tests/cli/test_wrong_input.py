@@ -88,6 +88,7 @@ GOOD = {"--tool": "torus:12x1", "--scallop": "0.02"}
     ("sheet.step", {"--allowance-on": "1"}, "allowance on faces '1' is not understood: write numbers and a length"),
     ("sheet.step", {"--allowance-on": "1=-0.1"}, "allowance on face 1 is -0.1 mm: it must be zero or more"),
     ("sheet.step", {"--allowance-on": "7=0.1"}, "face 7 is to keep an allowance and is not in the part"),
+    ("sheet.step", {"--lead": "-1"}, "radius of lead-in and lead-out is -1.0 mm: it must be zero .none. or more"),
     ("sheet.step", {"--feedrate": "0"}, "feedrate is 0"),
     ("sheet.step", {"--limits": "cone:0,0,0,10"}, "direction"),
     ("sheet.step", {"--limits": "sphere"}, "limits 'sphere' are not understood"),

@@ -18,6 +18,7 @@ from toolaxis.messages.translate import translate
 from toolaxis.plan.plan import Plan
 from toolaxis.report.tables import allowance_line
 from toolaxis.shape.part import Edge
+from toolaxis.skin.find import find_skins
 from toolaxis.tolerances import Tolerance
 
 LEFT = 0.3
@@ -140,6 +141,12 @@ def test_faces_that_keep_different_allowances_are_not_joined() -> None:
     assert "Aufmaß" in translate(str(raised.value), "german")
     apart = plan_step({3: LEFT}, faces=(1, 3))
     assert {op.face.numbers for op in apart.operations} == {(1,), (3,)}
+
+
+def test_skins_end_where_the_allowance_changes() -> None:
+    assert [face.numbers for face in find_skins(step()).faces] == [(1, 3)]
+    assert not find_skins(step().leave_allowances(0.0, {3: LEFT})).faces
+    assert [face.numbers for face in find_skins(step().leave_allowances(0.0, {1: LEFT, 3: LEFT})).faces] == [(1, 3)]
 
 
 @pytest.mark.parametrize("given, found", [

@@ -21,6 +21,7 @@ from toolaxis.report.tables import lean_line
 from toolaxis.search.fixed_axis import task
 from toolaxis.strategies.common.passes import plan_passes
 from toolaxis.tolerances import Tolerance
+from toolaxis.verify import contact_leans
 
 LEAN = radians(12)
 
@@ -93,6 +94,28 @@ def test_the_judge_measures_it_and_fails_a_plan_that_did_not_know_of_it(plain: P
     why, = (reason for reason in planted.reasons if "leans" in reason)
     assert "the ball end leans 1." in why and "from the normal of face 1 at (" in why and "needed 12 deg, on the" in why
     assert "Kugelfräser neigt sich" in translate(why, "german")
+
+
+def test_a_lean_is_measured_at_the_contact_itself() -> None:
+    """On a sphere of radius 9, with the ball's centre over contacts whose normals are known."""
+    cap = np.linspace(-0.9, 0.9, 31)
+    u, v = np.meshgrid(cap, cap, indexing="ij")
+    way = np.stack([u, v, np.ones_like(u)], axis=-1)
+    sphere = ta.Face.from_bspline(9 * way / np.linalg.norm(way, axis=-1, keepdims=True))
+    uv = np.linspace(0.2, 0.7, 40)[:, None] * [1.0, 0.6] + [0.05, 0.15]
+    axis = np.array([-0.3, 0.4, 0.866]) / np.linalg.norm([-0.3, 0.4, 0.866])
+    tool, allowance = ta.Tool.ball(6), 0.2
+    tips = ta.place(sphere, tool, uv, axis) + allowance * sphere.normal(uv)
+    kind = np.array([Motion.ENTRY, *[Motion.CUT] * 39], dtype=np.int8)
+    found = contact_leans.least_lean((tips, np.tile(axis, (40, 1)), kind), tool.profile, (sphere,), (allowance, 0.1))
+    angles = np.arccos(sphere.normal(uv) @ axis)
+    assert found is not None and found.angle == pytest.approx(angles.min(), abs=2e-4)
+    contact = sphere.evaluate(uv[[np.argmin(angles)]]).point[0]
+    assert np.linalg.norm(np.array(found.point) - contact) < 0.1
+    # The same, too high to touch, leans nowhere.
+    high = tips + 0.2 * sphere.normal(uv)
+    assert contact_leans.least_lean((high, np.tile(axis, (40, 1)), kind), tool.profile, (sphere,),
+                                    (allowance, 0.1)) is None
 
 
 def test_an_axis_that_moves_leans_too() -> None:

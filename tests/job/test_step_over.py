@@ -65,7 +65,7 @@ def plain() -> Plan:
 def test_no_place_is_farther_from_a_pass_than_half_of_it(tool: str, more: dict[str, object]) -> None:
     made = plan_hill(MOST, tool, **more)
     assert made.outcome == "complete"
-    assert 0.42 * MOST < farthest_from_contacts(made, hill()) <= 0.503 * MOST
+    assert 0.42 * MOST < farthest_from_contacts(made, hill()) <= 0.5 * MOST
     verdict = ta.verify(made)
     assert verdict.passed, verdict.reasons
     found = [op.step_over.distance for op in verdict.operations if op.step_over is not None]
@@ -74,7 +74,7 @@ def test_no_place_is_farther_from_a_pass_than_half_of_it(tool: str, more: dict[s
 
 def test_4_plus_1_axes_keep_it_too() -> None:
     made = plan_hill(MOST, strategy="four-plus-one", machine="mikron-ucp-710")
-    assert made.outcome == "complete" and farthest_from_contacts(made, hill()) <= 0.503 * MOST
+    assert made.outcome == "complete" and farthest_from_contacts(made, hill()) <= 0.5 * MOST
     assert ta.verify(made).passed
 
 
@@ -123,6 +123,17 @@ def test_beside_a_wall_nothing_is_asked_for_where_no_pass_goes() -> None:
     assert verdict.passed, verdict.reasons
 
 
+def test_around_a_pin_nothing_is_asked_for_where_the_tool_cannot_stand() -> None:
+    """A flat bottom leaves little beside the pin, so that no zone is declared there, and passes end before it."""
+    pin = [plate((14, 9, 0), (2, 0, 0), (0, 0, 20)), plate((14, 11, 0), (2, 0, 0), (0, 0, 20)),
+           plate((14, 9, 0), (0, 2, 0), (0, 0, 20)), plate((16, 9, 0), (0, 2, 0), (0, 0, 20))]
+    part = ta.Part.from_faces([plate((0, 0, 0), (30, 0, 0), (0, 20, 0)), *pin])
+    made = ta.plan(part, "torus:8x1", 0.1, faces=[1], workers=1, greatest_step_over=0.5, limits="cone:0,0,1,8")
+    assert made.outcome == "complete"
+    verdict = ta.verify(made)
+    assert verdict.passed, verdict.reasons
+
+
 def test_prices_of_axes_know_of_it() -> None:
     tool, axes = ta.Tool.torus(8, 1), np.array([[0.3, 0.1, 0.9], [0.0, 0.4, 0.9]])
     plain, capped = (Estimator.of(hill(), tool, 0.05, greatest_step_over=most).many(axes, exact=False)
@@ -135,7 +146,7 @@ def test_prices_of_axes_know_of_it() -> None:
 def test_a_rack_keeps_it() -> None:
     made = plan_hill(MOST, ["torus:8x1", "ball:4"])
     assert made.outcome == "complete" and ta.verify(made).passed
-    assert farthest_from_contacts(made, hill()) <= 0.503 * MOST
+    assert farthest_from_contacts(made, hill()) <= 0.5 * MOST
 
 
 @pytest.mark.parametrize("most, said", [(-1.0, "greatest step-over is -1.0 mm: it must be finite and above zero"),

@@ -33,7 +33,7 @@ from toolaxis.tools.tool import Tool
 _INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_over": float,
            "method": str, "objective": str, "direction": str,
            "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
-           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances"}
+           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances", "lead": float}
 #: What is written among the tolerances of a plan.
 _OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
@@ -197,7 +197,7 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     chosen = check_strategy(own["strategy"], Asked(
         tools[0], machine, spec.inputs.method, spec.inputs.objective, _in_mm(own["roughness"]), spec.orientations,
         passes=spec.inputs.passes, least_lean=spec.inputs.tolerance.least_lean,
-        greatest_step_over=spec.inputs.greatest_step_over))
+        greatest_step_over=spec.inputs.greatest_step_over, lead=spec.inputs.lead))
     if len(tools) > 1:
         check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions is not None,
                                      spec.orientations is not None, compare=own["compare"]))

@@ -163,6 +163,10 @@ def _add_search_options(sub: _Parser) -> None:
     sub.add_argument("--greatest-step-over", type=float, default=0.0, metavar="MM",
                      help="greatest distance of neighbouring passes on the face, whatever the scallop height allows "
                           "(default: 0, none)")
+    sub.add_argument("--lead", type=float, default=0.0, metavar="MM",
+                     help="radius of the arcs on which the tool comes down to passes and is lifted from them, in the "
+                          "plane of the surface's normal and the feed: wherever these are proven free, straight ramps "
+                          "elsewhere (default: 0, ramps alone)")
     sub.add_argument("--direction", default="zigzag", choices=DIRECTIONS)
     sub.add_argument("--passes", default=ISO, choices=PASSES,
                      help="how passes lie: iso (default), along a parameter of the face; planes, along parallel planes "

@@ -48,7 +48,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     check_strategy(given.strategy, Asked(one, load_machine(spec.machine) if spec.machine else None, given.method,
                                          spec.inputs.objective, _roughness(given), given.orientations,
                                          passes=given.passes, least_lean=spec.inputs.tolerance.least_lean,
-                                         greatest_step_over=spec.inputs.greatest_step_over))
+                                         greatest_step_over=spec.inputs.greatest_step_over, lead=spec.inputs.lead))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.pipeline import plan
@@ -65,7 +65,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         compare=given.compare, limit=spec.inputs.limit,
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
-                        allowance_on=spec.inputs.allowance_on,
+                        allowance_on=spec.inputs.allowance_on, lead=spec.inputs.lead,
                         progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
@@ -88,7 +88,7 @@ def _spec(given: Namespace) -> Spec:
                         given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
                         passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock,
                         greatest_step_over=given.greatest_step_over,
-                        allowance_on=parse_allowances(given.allowance_on))
+                        allowance_on=parse_allowances(given.allowance_on), lead=given.lead)
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""

@@ -10,7 +10,7 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 
 #: Share of the greatest step-over that passes are laid for: half widths are interpolated between measured lines.
-KEPT = 0.995
+KEPT = 0.99
 #: How often a half width is shortened by the share that it is too long, and the share of the range of the step
 #: parameter over which its pace is taken first.
 _ROUNDS, _SMALL = 5, 1e-4

@@ -1,6 +1,6 @@
 """From pieces of passes to one tool path: run in, cut, run out; on to the next beside it, or up, across and down."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 FLANK, ASIDE = 0.03, 0.3
 #: A stroke this near begins beside the end of the other, mm: to lift, to cross and to come down takes about as long.
 BESIDE = 8.0
+#: Straight motions of a quarter of a circle, at least and at most.
+_FEWEST_CHORDS, _MOST_CHORDS = 4, 200
 #: Heights of the way over to it that are tried, as shares of its length, and lifts above the higher end of a link, mm.
 ROOFS, LIFTS = (0.0, 0.25, 0.5, 1.0), (1.0, 3.0, 8.0, 20.0, 45.0, 90.0)
 
@@ -33,6 +35,51 @@ class CuttingMove:
     contact: Array
     tip: Array
     normal: Array
+
+
+@dataclass(frozen=True)
+class LeadArcs:
+    """Arcs on which a tool comes to its passes and leaves them.
+
+    Attributes
+    ----------
+    radius : float
+        Of the tip's way, mm.
+    chord : float
+        How far straight motions may leave an arc, mm.
+    free : callable
+        Takes both ends (m, 3) of straight motions, mm, and the axes there (m, 3), and answers on which all distances
+        are kept that passes keep, (m,) bool.
+    """
+
+    radius: float
+    chord: float
+    free: Callable[[Array, Array, Array], NDArray[np.bool_]]
+
+    def points(self, end: tuple[Array, Array], normal: Array) -> Array:
+        """Points of a quarter of a circle, (m, 3) mm, from far to near without the end of the stroke itself.
+
+        It lies in the plane of the surface's normal and the feed, touches the stroke at its end and rises from the
+        surface; chords lie on the side of its centre.
+
+        Parameters
+        ----------
+        end : (3,) array, (3,) array
+            Tips at the end of the stroke and next to it, mm.
+        normal : (3,) array
+            Of the surface there.
+        """
+        outward = end[0] - end[1]
+        size = float(np.linalg.norm(outward))
+        if size == 0:
+            return np.empty((0, 3))
+        outward = outward / size
+        up = normal - float(normal @ outward) * outward
+        up = up / np.linalg.norm(up)
+        most = 2 * np.arccos(max(1 - self.chord / self.radius, 0.0))
+        count = int(np.clip(np.ceil(np.pi / 2 / max(most, 1e-3)), _FEWEST_CHORDS, _MOST_CHORDS))
+        turn = np.linspace(np.pi / 2, 0.0, count + 1)[:-1, None]
+        return np.asarray(end[0] + self.radius * (np.sin(turn) * outward + (1 - np.cos(turn)) * up))
 
 
 @dataclass(frozen=True)
@@ -58,6 +105,9 @@ class Linking:
         Takes the tips (k, 3) at which links at rapid traverse would begin or end beside strokes, mm, the axes there
         (k, 3), and how far each may be lifted at most, (k,) mm, and answers how far they have to be lifted for links to
         clear what stock is left, (k,) mm: so far up the tool goes at feed rate.  They begin there without it.
+    lead : LeadArcs, optional
+        Where the tool comes down to a stroke and where it is lifted after one, these take the place of ramps wherever
+        they are free.
 
     Raises
     ------
@@ -71,6 +121,7 @@ class Linking:
     lower: Callable[[Array, Array], Array] | None = None
     beside: Callable[[Array, Array], Array] | None = None
     rise: Callable[[Array, Array, Array], Array] | None = None
+    lead: LeadArcs | None = None
 
     def __post_init__(self) -> None:
         for name in ("height", "run_in", "approach"):
@@ -114,6 +165,8 @@ def link(passes: list[list[CuttingMove]], axis: Array, linking: Linking) -> Tool
     exits = [exit_points(one, axis, linking) for one in strokes]
     over = _over((entries, exits), axis, linking)
     axes = np.tile(axis, (len(strokes), 1))
+    lifted = ~np.isfinite(over[:, 0])
+    lay_lead_arcs((entries, exits), strokes, (lifted, axes, axes), linking)
     for points, which in ((entries, 0), (exits, -1)):
         raise_link_ends(points, which, axes, linking, lambda tips, _: linking.height - tips @ axis)
     stays = np.isfinite(over[:, 0])
@@ -222,6 +275,42 @@ def exit_points(stroke: CuttingMove, axis: Array, linking: Linking) -> Array:
     ramp = _ramp((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1], axis, linking.run_in)
     low = ramp[-1] if len(ramp) else stroke.tip[-1]
     return np.concatenate([ramp, (low + linking.approach * axis)[None]])
+
+
+def lay_lead_arcs(points: tuple[list[Array], list[Array]], strokes: Sequence[CuttingMove],
+                  where: tuple[NDArray[np.bool_], Array, Array], linking: Linking) -> None:
+    """Put arcs, in place, where strokes are entered from above and where they are left upwards, if these are free.
+
+    Parameters
+    ----------
+    points : list of (m, 3) array, list of (m, 3) array
+        From `entry_points` and from `exit_points`, one for each stroke, mm.
+    strokes : sequence of CuttingMove
+    where : (k + 1,) array of bool, (k, 3) array, (k, 3) array
+        Before which strokes, and after the last one, the tool is lifted; axes where strokes begin and where they end.
+    linking : Linking
+    """
+    if linking.lead is None:
+        return
+    lifted, first, last = where
+    made: list[tuple[int, int, Array]] = []
+    for k, stroke in enumerate(strokes):
+        if lifted[k]:
+            arc = linking.lead.points((stroke.tip[0], stroke.tip[1]), stroke.normal[0])
+            made += [(0, k, np.concatenate([arc[:1] + linking.approach * first[k], arc]))] if len(arc) else []
+        if lifted[k + 1]:
+            arc = linking.lead.points((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1])
+            made += [(1, k, np.concatenate([arc[:1] + linking.approach * last[k], arc]))] if len(arc) else []
+    if not made:
+        return
+    ways = [np.concatenate([one, strokes[k].tip[[0 if side == 0 else -1]]]) for side, k, one in made]
+    axes = [np.tile((first, last)[side][k], (len(one), 1)) for side, k, one in made]
+    free = linking.lead.free(np.concatenate([way[:-1] for way in ways]), np.concatenate([way[1:] for way in ways]),
+                             np.concatenate(axes))
+    ends = np.cumsum([len(one) for _, _, one in made])
+    for (side, k, one), whole in zip(made, np.split(free, ends[:-1]), strict=True):
+        if whole.all():
+            points[side][k] = one if side == 0 else one[::-1]
 
 
 def raise_link_ends(points: list[Array], which: int, axes: Array, linking: Linking,

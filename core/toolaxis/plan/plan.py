@@ -40,6 +40,10 @@ CHANGE_SECONDS = 10.0
 LEFT_OPEN = 1e-3
 
 
+#: Larger arcs of lead-in and lead-out are not planned, mm.
+MOST_LEAD = 100.0
+
+
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
     if value not in choices:
         raise InvalidInput(f"{name} {value!r} is unknown: use {one_of(choices)}")
@@ -87,6 +91,9 @@ class PlanInputs:
     allowance_on : tuple of (int, float)
         Faces on which an allowance of their own is left, in place of `allowance`, with that, mm; by numbers of the
         file's faces.
+    lead : float
+        Radius of the arcs on which the tool comes down to passes and leaves them, wherever these are proven free, mm; 0
+        for straight ramps.
 
     Raises
     ------
@@ -112,6 +119,7 @@ class PlanInputs:
     stock: float = 0.0
     greatest_step_over: float = 0.0
     allowance_on: tuple[tuple[int, float], ...] = ()
+    lead: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -124,6 +132,9 @@ class PlanInputs:
         Allowances(self.allowance, dict(self.allowance_on))
         self._check_stock()
         self._check_step_over()
+        if not (isfinite(self.lead) and 0 <= self.lead <= MOST_LEAD):
+            raise InvalidInput(f"radius of lead-in and lead-out is {self.lead} mm: it must be zero (none) or more, and "
+                               f"at most {MOST_LEAD:g} mm")
         if not (isfinite(self.roughness) and self.roughness >= 0):
             raise InvalidInput(f"roughness is {self.roughness} mm: it must be finite and not below zero")
         if isinstance(self.limit, bool) or not (isfinite(self.limit) and self.limit > 0):

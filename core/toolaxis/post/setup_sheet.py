@@ -140,6 +140,8 @@ def _general(program: Program, dialect: Dialect, file: str, verdict: str) -> str
                         "none on all other faces: measure before the start"])
     if program.plan.part.allowances is not None:
         rows.insert(4, ["allowance", program.plan.part.allowances.described])
+    if program.inputs.lead > 0:
+        rows.insert(4, ["lead-in and lead-out", f"arcs of {program.inputs.lead:g} mm, straight where not proven free"])
     lean = program.inputs.tolerance.least_lean
     if lean > 0:
         rows.insert(4, ["least lean of ball ends", f"{degrees(lean):g} deg from the normal at every contact"])

@@ -121,7 +121,7 @@ def plan_table(plan: Plan) -> Table:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
     aside = (describe_not_begun(plan), describe_hidden(plan), describe_held(plan))
-    asked = (allowance_line(plan), step_over_line(plan), lean_line(plan), stock_line(plan))
+    asked = (allowance_line(plan), step_over_line(plan), lead_line(plan), lean_line(plan), stock_line(plan))
     notes = (_of_part(plan), *aside, _BOUNDS, *asked, _ideal(plan), points, reckoning(plan), _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))
 
@@ -135,6 +135,19 @@ def allowance_line(plan: Plan) -> str:
     """
     kept = plan.part.allowances
     return "" if kept is None else f"left on purpose: {kept.described}"
+
+
+def lead_line(plan: Plan) -> str:
+    """How the tool comes to passes and leaves them, as a sentence; empty for straight ramps alone.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    radius = plan.inputs.lead
+    if radius == 0:
+        return ""
+    return f"lead-in and lead-out: arcs of {radius:g} mm, straight where these are not proven free"
 
 
 def lean_line(plan: Plan) -> str:

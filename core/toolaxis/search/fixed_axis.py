@@ -23,7 +23,7 @@ from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.leaving_out import leave_out
-from toolaxis.path.links import Linking
+from toolaxis.path.links import LeadArcs, Linking
 from toolaxis.path.mending import FurtherPasses, complete_passes
 from toolaxis.path.pass_layout import Layout, lay_out, pass_length, places_between
 from toolaxis.path.pass_pattern import pattern_name, pattern_names
@@ -138,6 +138,8 @@ class FaceProblem:
         undercut.
     laid_for : float
         Share of the scallop height for which passes are laid.
+    lead : float
+        Radius of the arcs on which the tool comes to passes and leaves them, mm; 0 for none.
     """
 
     feasibility: Feasibility
@@ -148,6 +150,7 @@ class FaceProblem:
     direction: str = "zigzag"
     left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
     laid_for: float = 1.0
+    lead: float = 0.0
 
     @property
     def box(self) -> Array:
@@ -243,9 +246,10 @@ class FaceProblem:
                     for group in self.groups)
         over = height_over(self.worth.scallop)
         crossing = LinkClearance(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
+        lead = LeadArcs(self.lead, self.chord, crossing.free) if self.lead > 0 else None
         return trace(placed, self.chord, self.direction,
                      linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
-                                     beside=crossing.beside, rise=crossing.rise))
+                                     beside=crossing.beside, rise=crossing.rise, lead=lead))
 
     def made(self, axis: Array, feed: str) -> ToolPath:
         """The very passes, links and ramps included, that `check_candidate` proves.
@@ -298,14 +302,14 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
          direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
-         greatest_step_over: float = np.inf, progress: Progress = NO_PROGRESS) -> FaceProblem:
+         greatest_step_over: float = np.inf, lead: float = 0.0, progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
     ----------
     face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, passes, feeds
         As for `best_axis`.
-    greatest_step_over : float
+    greatest_step_over, lead : float
         As for `best_axis`.
     limits : AxisLimits, optional
     progress : Progress
@@ -328,7 +332,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
                                          obstacles=obstacles) for limit in (kept, given))
     reach = at_face(limits, face, tool)
     return FaceProblem(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress,
-                       direction)
+                       direction, lead=lead)
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
@@ -336,7 +340,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
               skin: Sequence[Face] = (), surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None,
               allowance: float = 0.0, limits: AxisLimits | str | None = None, direction: str = "zigzag",
               passes: str = ISO, starts: ArrayLike | None = None, feeds: Feeds | None = None,
-              greatest_step_over: float = np.inf, progress: Progress = NO_PROGRESS) -> Orientation:
+              greatest_step_over: float = np.inf, lead: float = 0.0,
+              progress: Progress = NO_PROGRESS) -> Orientation:
     """The fixed tool axis that machines a face with the least cutting length, in the fewest passes, or in least time.
 
     Parameters
@@ -379,6 +384,9 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         What is programmed; for the objective "time", which also needs a machine that states its limits.
     greatest_step_over : float
         Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows.
+    lead : float
+        Radius of the arcs on which the tool comes to passes and leaves them where these are proven free, mm; 0 for
+        none.
     progress : Progress
 
     Returns
@@ -403,7 +411,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
         raise InvalidInput(f"method is {method!r}: it must be one of {', '.join(METHODS)}")
     job = task(face, tool, scallop, intersect_limits(machine, limits), obstacles, objective=objective, part=part,
                skin=skin, surroundings=surroundings, tolerance=tolerance, allowance=allowance, direction=direction,
-               passes=passes, feeds=feeds, greatest_step_over=greatest_step_over, progress=progress)
+               passes=passes, feeds=feeds, greatest_step_over=greatest_step_over, lead=lead, progress=progress)
     return find_axis(job, method, starts)[0]
 
 

@@ -110,6 +110,18 @@ class LinkClearance:
         return lambda tips, axes, most: least_rise(tips, axes, most,
                                                    lambda start, end, _: self._clear(start, end, rapid=True))
 
+    def free(self, start: Array, end: Array, axes: Array) -> Bools:
+        """Whether straight motions keep all distances that strokes keep, (k,).
+
+        Parameters
+        ----------
+        start, end : (k, 3) array
+            Tips, mm.
+        axes : (k, 3) array
+            All the same.
+        """
+        return self._clear(start, end)
+
     def _clear(self, start: Array, end: Array, across: bool = False, rapid: bool = False) -> Bools:
         """Whether straight motions keep their distances, (k,): across, and at rapid traverse, those of links too."""
         axes = np.broadcast_to(self.axis, start.shape)

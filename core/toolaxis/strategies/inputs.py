@@ -77,6 +77,9 @@ def _check_moving(strategy: Strategy, asked: Asked) -> None:
     if asked.greatest_step_over > 0 and strategy.own_spacing:
         raise InvalidInput(f"strategy {name!r} lays its passes by a rule of its own, without a greatest step-over: "
                            "leave out the step-over, or use fixed axes, 'sturz' or 'four-plus-one'")
+    if asked.lead > 0 and strategy.own_spacing:
+        raise InvalidInput(f"strategy {name!r} joins its passes by a rule of its own, without arcs of lead-in and "
+                           "lead-out: leave out the lead, or use fixed axes, 'sturz' or 'four-plus-one'")
     if asked.least_lean > 0 and strategy.in_layers:
         raise InvalidInput(f"strategy {name!r} swings the axis about the ball's centre and keeps no least lean: leave "
                            "out the least lean, or use fixed axes")

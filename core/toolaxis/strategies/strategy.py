@@ -56,6 +56,8 @@ class Asked:
         Least angle between the axis of a ball end and the normal at its contacts, rad; 0 for none.
     greatest_step_over : float
         Greatest distance of neighbouring passes, mm; 0 for none.
+    lead : float
+        Radius of lead-in and lead-out, mm; 0 for none.
     """
 
     tool: "Tool | None"
@@ -69,6 +71,7 @@ class Asked:
     passes: str = ISO
     least_lean: float = 0.0
     greatest_step_over: float = 0.0
+    lead: float = 0.0
 
 
 class Strategy(Protocol):
@@ -101,7 +104,7 @@ class Strategy(Protocol):
     compared : bool
         Whether a comparison of methods takes it too, where the machine drives the axes.
     own_spacing : bool
-        Whether it lays passes by a rule of its own, which knows of no greatest step-over.
+        Whether it lays and joins passes by a rule of its own, which knows of no greatest step-over and no lead-in.
     promise : str
         How the reason begins that tells that it did what it is there for; empty where all its passes do.
     """

@@ -76,6 +76,8 @@ class VerificationTask:
         Greatest distance of neighbouring passes on the targets, mm; 0 where none is asked for.
     left_on : tuple of (Face, float)
         The part's own faces that keep an allowance, with that, mm, without the targets: no motion goes deeper.
+    lead : float
+        Radius of the arcs of lead-in and lead-out, mm; 0 where none are asked for.
     """
 
     name: str
@@ -104,6 +106,7 @@ class VerificationTask:
     proud: tuple[Face, ...] = ()
     greatest_step_over: float = 0.0
     left_on: tuple[tuple[Face, float], ...] = ()
+    lead: float = 0.0
 
     def __post_init__(self) -> None:
         if not (isfinite(self.scallop) and self.scallop > 0):

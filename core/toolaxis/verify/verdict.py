@@ -18,6 +18,7 @@ from toolaxis.verify.contact_leans import UNCERTAINTY, ContactLean, least_lean
 from toolaxis.verify.declared import STRIP, DeclaredZones
 from toolaxis.verify.depths import Depths
 from toolaxis.verify.held_side import distance_to_held_side
+from toolaxis.verify.lead_arcs import LeadCount, check_leads
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
 from toolaxis.verify.material_removal import Removal, RestMaterial
@@ -36,6 +37,10 @@ SHARE, FACTOR = 0.999, 1.02
 
 #: Axes are the same up to this, rad: CL files have nine digits.
 SAME_AXIS = 1e-6
+
+#: Where a tool that stands on a face would be deeper than this share of the machining tolerance, or have no more than
+#: so much more than its clearance, mm, no pass is missed.
+_DEEP, _MORE = 0.5, 0.05
 
 NOT_CHECKED = "not checked"
 #: The cutter where links carry it, which must not cut.
@@ -93,6 +98,8 @@ class OperationVerdict:
     step_over : PassDistance, optional
         Where neighbouring passes lie farthest apart; None where no greatest step-over is asked for, or they lie nowhere
         near as far apart.
+    leads : LeadCount, optional
+        Of how many ends of passes there are arcs; None where none are asked for.
     """
 
     name: str
@@ -120,6 +127,7 @@ class OperationVerdict:
     from_stock: dict[str, Clearance] = field(default_factory=dict)
     lean: ContactLean | None = None
     step_over: PassDistance | None = None
+    leads: LeadCount | None = None
 
     @property
     def measured(self) -> bool:
@@ -354,8 +362,9 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
     zones = tuple(sorted((zone for one in targets for zone in one.zones(limit)), key=lambda zone: -zone.area))
     gouge = max((one.worst_gouge.value for one in maps if one.worst_gouge is not None), default=0.0)
     gouge_max, reached_max = max(gouge, -edge.distance), max(reached, default=0.0 if touched else float("inf"))
-    lean, step_over = _find_lean(task), _find_step_over(task, targets)
+    lean, step_over, leads = _find_lean(task), _find_step_over(task, targets), _find_leads(task)
     failures = [*_axis_reasons(task), *_lean_reasons(task, lean), *_step_over_reasons(task, step_over),
+                *(() if leads is None else leads.faults),
                 *_scallop_reasons(task, share, zones, area), *_gouge_reasons(task, gouge, gouges),
                 *_edge_reasons(task, edge), *_link_reasons(task, link_cut), *_room_reasons(task, rooms),
                 *_reasons_of_held_side(task), *_reasons_of_allowances(task), *_stock_reasons(task, measured.from_stock),
@@ -368,7 +377,7 @@ def verdict_on(task: VerificationTask, measured: OperationMeasurement,
         reached_max, share, left, gouge_max, task.tolerance.gouge, rooms,
         _worst(targets, "remaining", 0.0), _with_edge(task, gouges, edge, uncertainty), link_cut, zones, area, count,
         max(one.spacing for one in maps), uncertainty, not failures, (*failures, *notes),
-        maps, task.stock, measured.from_stock, lean, step_over)
+        maps, task.stock, measured.from_stock, lean, step_over, leads)
 
 
 def _axis_reasons(task: VerificationTask) -> list[str]:
@@ -402,10 +411,36 @@ def _find_step_over(task: VerificationTask, maps: tuple[SurfaceMap, ...]) -> Pas
     """The greatest distance of neighbouring passes, declared zones aside, where one is asked for."""
     if task.greatest_step_over == 0:
         return None
-    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing) for one in maps]
-    off = task.scallop + task.tolerance.gouge
-    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces, (task.allowance, off),
-                             task.greatest_step_over)
+    left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
+    faces = [MeasuredFace(one.face, one.point[~one.declared], one.spacing, partial(left.holds, one.face))
+             for one in maps]
+    return greatest_distance((task.tips, task.axes, task.kind), task.profile, faces,
+                             (task.allowance, task.tolerance.gouge),
+                             task.greatest_step_over, partial(_may_stand, task))
+
+
+def _may_stand(task: VerificationTask, tips: Array, axes: Array) -> bool:
+    """Whether the tool could cut on a way: no less far from everything than it has to be, and a little more."""
+    kind = np.full(len(tips), int(Motion.CUT), dtype=np.int8)
+    skin = (*task.targets, *task.skin)
+    rest = (*skin, *task.touching, *task.surroundings)
+    cutter = cutter_solid(task.profile)
+    asked = [("cutter", cutter, skin, task.allowance - _DEEP * task.tolerance.gouge),
+             ("cutter", cutter, task.touching, -_DEEP * task.tolerance.gouge),
+             ("cutter", cutter, task.surroundings, task.tolerance.cutter_clearance + _MORE)]
+    asked += [(name, frustum_solids(outline, name), rest, _clearance_of(task, name) + _MORE)
+              for name, outline in task.outlines.items()]
+    asked += [("cutter", cutter, (face,), left + task.tolerance.cutter_clearance + _MORE)
+              for face, left in task.left_on if left > task.allowance]
+    return all(clearance((tips, axes, kind), (name, solids), faces, enough=max(need, 0.0)).distance >= need
+               for name, solids, faces, need in asked if faces)
+
+
+def _find_leads(task: VerificationTask) -> LeadCount | None:
+    """What is seen of the arcs of lead-in and lead-out, where they are asked for."""
+    if task.lead == 0:
+        return None
+    return check_leads((task.tips, task.axes, task.kind), task.profile, task.targets, task.allowance, task.lead)
 
 
 def _step_over_reasons(task: VerificationTask, found: PassDistance | None) -> list[str]:

@@ -146,7 +146,7 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
                             before=_end_of(last, op.tool), held=_side_for_judge(plan), stock=plan.inputs.stock,
                             proud=_proud(plan), greatest_step_over=plan.inputs.greatest_step_over,
-                            left_on=_left_on(plan, targets))
+                            left_on=_left_on(plan, targets), lead=plan.inputs.lead)
 
 
 def _side_for_judge(plan: Plan) -> HeldSide | None:
@@ -278,4 +278,5 @@ def _operation_document(op: OperationVerdict) -> dict[str, Any]:
             "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
             "least_lean": None if op.lean is None else op.lean.angle,
             "step_over": None if op.step_over is None else op.step_over.distance,
+            "lead_arcs": None if op.leads is None else {"arcs": op.leads.arcs, "ends": op.leads.ends},
             "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}

@@ -55,7 +55,7 @@ def search_task(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> 
                 part=plan.part_around(op.face.number), tolerance=plan.inputs.tolerance,
                 allowance=plan.inputs.allowance_of(op.face),
                 direction=plan.inputs.direction, passes=plan.inputs.passes, feeds=feeds,
-                greatest_step_over=plan.inputs.step_over, progress=progress)
+                greatest_step_over=plan.inputs.step_over, lead=plan.inputs.lead, progress=progress)
 
 
 def rule_of_thumb(plan: Plan, op: Operation, progress: Progress = NO_PROGRESS) -> Array:

@@ -74,7 +74,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          offset: ArrayLike | None = None, rapid: float = 10000.0, roughness: float | None = None,
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
          least_lean: float | None = None, greatest_step_over: float = 0.0,
-         allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None,
+         allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None, lead: float = 0.0,
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
@@ -173,6 +173,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         degrees.  `tolerance.least_lean` unless given, which is none unless given either.
     greatest_step_over : float
         Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows; 0 for none.
+    lead : float
+        Radius of the arcs on which the tool comes down to passes and is lifted from them, mm, in the plane of the
+        surface's normal and the feed: wherever these are proven free, straight ramps elsewhere; 0 for ramps alone.
     allowance_on : mapping of int to float, or text such as "3,5-8=0.3;9=0.1", optional
         What is left on some faces in place of `allowance`, mm, by their numbers: they are machined to that height, and
         kept to it while others are machined.  A part with such faces is planned face by face, its blades not told
@@ -206,7 +209,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     chosen = check_strategy(strategy, Asked(
         cutter, None if mounting is None else mounting.machine, method, objective,
         None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
-        least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over)))
+        least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over), lead=float(lead)))
     method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
     words = short if isinstance(short, str) else format_limits(allowed)
@@ -215,7 +218,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                         SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
                         numbers_to_avoid(avoid), held, float(stock), float(greatest_step_over),
-                        parse_allowances(allowance_on))
+                        parse_allowances(allowance_on), float(lead))
     if objective == "time":
         require_machine_limits(mounting)
     if len(rack.tools) > 1:

@@ -549,7 +549,7 @@ class PlanningJob:
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
                            part=self.part, allowance=self.inputs.allowance_of(face), tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, passes=self.inputs.passes,
-                           greatest_step_over=self.inputs.step_over, progress=progress)
+                           greatest_step_over=self.inputs.step_over, lead=self.inputs.lead, progress=progress)
 
 
 def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:

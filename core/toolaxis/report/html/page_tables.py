@@ -191,7 +191,7 @@ def setting_rows(plan: Plan, source: str) -> Rows:
     given = {**asdict(plan.inputs), "avoid": ", ".join(map(str, plan.inputs.avoid)),
              "allowance_on": "" if plan.part.allowances is None else plan.part.allowances.described}
     tolerance = given.pop("tolerance") | {"chord": plan.inputs.chord}
-    units = {**dict.fromkeys(("scallop", "allowance", "stock", "greatest_step_over"), "mm"),
+    units = {**dict.fromkeys(("scallop", "allowance", "stock", "greatest_step_over", "lead"), "mm"),
              "feedrate": "mm/min", "rapid": "mm/min", "spindle": "rev/min"}
     rows = [[name, f"{value:g} {units.get(name, '')}".strip() if isinstance(value, float) else str(value) or "-"]
             for name, value in given.items()]

@@ -24,6 +24,7 @@ from toolaxis.path.links import (
     entry_points,
     exit_points,
     kinds_of,
+    lay_lead_arcs,
     near_end,
     raise_link_ends,
 )
@@ -132,6 +133,7 @@ def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolP
     first, last = (np.array([one.axis[k] for one in strokes]) for k in (0, -1))
     top = how.height(np.concatenate([first, last]))
     over = _over((ends, begins), (last, first), how)
+    lay_lead_arcs((begins, ends), strokes, (~np.isfinite(over[:, 0]), first, last), how.linking)
     for points, which, axes in ((begins, 0, first), (ends, -1, last)):
         raise_link_ends(points, which, axes, how.linking, lambda tips, along: _lifts(tips, along, how.up, top))
     down = _above(np.array([one[0] for one in begins]), first, how.up, top)

@@ -19,7 +19,7 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.chord_tolerance import follow, rises
 from toolaxis.path.cl_points import climbing
-from toolaxis.path.links import Linking
+from toolaxis.path.links import LeadArcs, Linking
 from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import tip_points
 from toolaxis.path.pass_layout import Layout, lay_out
@@ -164,8 +164,10 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
                 for group in job.groups)
     over = height_over(job.worth.scallop)
     crossing = MovingLinkClearance(cut.tool, job.groups, cut.allowance, over)
+    lead = None if job.lead == 0 else LeadArcs(
+        job.lead, job.chord, lambda start, end, axes: crossing.clear(start, end, axes, axes, False, False))
     linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER,
-                      rise=crossing.rise)
+                      rise=crossing.rise, lead=lead)
     return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
 
 
