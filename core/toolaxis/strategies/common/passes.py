@@ -29,7 +29,7 @@ from toolaxis.search.fixed_axis import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import body_clearance, mounting_of, while_moving
 from toolaxis.search.path_check import PathCheck
-from toolaxis.strategies.common.links import MovingCuttingMove, MovingLinks, join_moves
+from toolaxis.strategies.common.links import LinkMotion, MovingCuttingMove, MovingLinks, join_moves
 from toolaxis.strategies.common.machine_collision import meeting_in_motion, motions
 from toolaxis.strategies.common.path_check import MovingLinkClearance, prove_moving
 
@@ -165,7 +165,7 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
     over = height_over(job.worth.scallop)
     crossing = MovingLinkClearance(cut.tool, job.groups, cut.allowance, over)
     lead = None if job.lead == 0 else LeadArcs(
-        job.lead, job.chord, lambda start, end, axes: crossing.clear(start, end, axes, axes, False, False))
+        job.lead, job.chord, lambda start, end, axes: crossing.clear(start, end, axes, axes, LinkMotion.AT_FEED))
     linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER,
                       rise=crossing.rise, lead=lead)
     return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
