@@ -72,7 +72,7 @@ class MeasuredFace(NamedTuple):
 def greatest_distance(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, faces: Sequence[MeasuredFace],
                       heights: tuple[float, float], most: float,
                       may_stand: Callable[[Array, Array], bool] | None = None) -> PassDistance | None:
-    """The greatest distance of neighbouring passes on faces, where it comes near to what is allowed.
+    """The greatest distance of neighbouring passes on faces, across the one, where it comes near to what is allowed.
 
     Parameters
     ----------
@@ -117,7 +117,8 @@ def greatest_distance(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profil
         rows = rows[along <= _ACROSS * near[rows]]  # elsewhere it lies before or behind the end of a pass
         other = _other_side(one.point[rows], touched[number[rows]], (passes, touched), (on_face, spacing),
                             (_TRIAL * most, _FAR * (profile.flat_radius + profile.corner_radius)))
-        gap = near[rows] + np.linalg.norm(other - one.point[rows], axis=1)
+        way, feed = other - touched[number[rows]], feeds[number[rows]]
+        gap = np.linalg.norm(way - dot(way, feed)[:, None] * feed, axis=1)
         i = _find_worst(stands, one.point[rows], other, gap)
         if i >= 0 and (best is None or gap[i] > best.distance):
             x, y, z = (float(value) for value in one.point[rows[i]])
