@@ -63,8 +63,9 @@ def test_a_path_that_gouges_all_over_is_refused_after_few_motions(walled, as_lon
 
 def test_what_is_known_is_not_looked_at_again(walled, as_long):
     job, path = walled
-    proof, first = work_of(job, path)
-    again, second = work_of(job, path, path_check.proven_motions(path, proof))
+    known = path_check.ProvenMotions()
+    proof, first = work_of(job, path, known)
+    again, second = work_of(job, path, known)
     assert again.witness is None and again.clearance == proof.clearance
     assert second < 0.8 * first
 
