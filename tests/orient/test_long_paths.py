@@ -79,3 +79,24 @@ def test_motions_that_follow_each_other_keep_together_only_what_each_keeps(walle
             alone = path_check.keeps_limits(group.cells, TOOL, moves, np.tile(required, (len(group.faces), 1)))
             blocked = path_check._find_blocked(TOOL, group, moves, required)
             assert (blocked == np.flatnonzero(alone.blocked >= 0)).all()
+
+
+def test_motions_are_found_again_to_the_last_digit(monkeypatch):
+    rng = np.random.default_rng(3)
+    moves = rng.normal(size=(400, 3, 3))
+    moves[7, 0, 0] = 0.0
+    for same_key in (False, True):
+        if same_key:
+            monkeypatch.setattr(path_check, "_keys_of", lambda rows: np.zeros(len(rows), dtype=np.uint64))
+        known = path_check.ProvenMotions()
+        assert len(known.find_blocked(0, known.enter(moves), lambda some: some[:0])) == 0
+        again = moves[::-1].copy()
+        again[5, 1, 2] = np.nextafter(again[5, 1, 2], np.inf)
+        again[392, 0, 0] = -0.0
+        asked = []
+        known.find_blocked(0, known.enter(again), lambda some: asked.append(some) or some[:0])  # noqa: B023
+        assert 5 in asked[0] and (same_key or len(asked[0]) == 1)
+        blocked = known.find_blocked(1, known.enter(moves), lambda some: np.array([0, 3]))
+        assert len(blocked) == 2
+        left = known.find_blocked(1, known.enter(moves), lambda some: np.arange(len(some)))
+        assert set(left) >= set(blocked) and (same_key or len(left) == 2)

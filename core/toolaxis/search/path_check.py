@@ -40,6 +40,9 @@ _ALLOWED = 1500
 #: long a motion of them may be, in radii of the tool.
 _TOGETHER, _EACH = (32, 8), 0.25
 
+#: Bit of the motions that were measured, and the factor by which keys are mixed.
+_MEASURED, _ODD = 62, np.uint64(0x9E3779B97F4A7C15)
+
 
 @dataclass(frozen=True, eq=False)
 class PathCheck:
@@ -67,67 +70,106 @@ class PathCheck:
 class ProvenMotions:
     """What earlier looks at passes with the same axis, tool and surroundings have proven.
 
+    A path may have millions of motions: they stand in arrays, sorted by a key made of their numbers, and are compared
+    to the last digit.  Of two that share a key one may not be found again; it is proven once more then.
+
     Attributes
     ----------
-    kept : dict of int to set of bytes
-        By number of the group the motions that keep its limits.
-    measured : set of bytes
-        Motions that the figures of `figures` hold for.
     figures : PathCheck
+        Of all motions that were measured.
     """
 
-    kept: dict[int, set[bytes]] = field(default_factory=dict)
-    measured: set[bytes] = field(default_factory=set)
     figures: PathCheck = field(default_factory=lambda: PathCheck(None))
+    _rows: Array = field(default_factory=lambda: np.empty((0, 6)))
+    _keys: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, dtype=np.uint64))
+    #: By motion a bit for each group whose limits it keeps, and one for those that were measured.
+    _proven: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
-    def find_blocked(self, number: int, names: list[bytes], ask: Callable[[NDArray[np.intp]], NDArray[np.intp]],
-                     ) -> NDArray[np.intp]:
+    def enter(self, moves: Array) -> NDArray[np.intp]:
+        """Where motions stand here from now on, (n,): until others are entered.
+
+        Parameters
+        ----------
+        moves : (n, 3, 3) array
+            From `segment_motions`.
+        """
+        rows = moves[:, :2].reshape(-1, 6)
+        keys = _keys_of(rows)
+        found = np.searchsorted(self._keys, keys)
+        there = np.flatnonzero(found < len(self._keys))
+        there = there[(self._rows[found[there]] == rows[there]).all(axis=1)]
+        new = np.setdiff1d(np.arange(len(rows)), there)
+        found[new] = len(self._keys) + np.arange(len(new))
+        every = np.concatenate([self._keys, keys[new]])
+        order = np.argsort(every, kind="stable")
+        self._keys = every[order]
+        self._rows = np.concatenate([self._rows, rows[new]])[order]
+        self._proven = np.concatenate([self._proven, np.zeros(len(new), dtype=np.int64)])[order]
+        place = np.empty(len(order), dtype=np.intp)
+        place[order] = np.arange(len(order))
+        return place[found]
+
+    def find_blocked(self, number: int, places: NDArray[np.intp],
+                     ask: Callable[[NDArray[np.intp]], NDArray[np.intp]]) -> NDArray[np.intp]:
         """The motions that are not proven to keep the limits of a group; it is asked only for those not known yet.
 
         Parameters
         ----------
         number : int
             Of the group.
-        names : list of bytes
-            Of all motions.
+        places : (n,) array of int
+            Of all motions, see `enter`.
         ask : callable
             Takes rows (k,) of motions, and gives back which of the k are not proven.
         """
-        known = self.kept.setdefault(number, set())
-        new = np.array([k for k, name in enumerate(names) if name not in known], dtype=np.intp)
+        new = self._unknown(places, number)
         if not len(new):
             return new
         blocked = new[ask(new)]
-        known.update(names[k] for k in np.setdiff1d(new, blocked))
+        self._proven[places[np.setdiff1d(new, blocked)]] |= 1 << number
         return blocked
 
-    def count_new(self, names: list[bytes]) -> int:
+    def count_new(self, places: NDArray[np.intp]) -> int:
         """How many motions no figures are known of.
 
         Parameters
         ----------
-        names : list of bytes
+        places : (n,) array of int
             Of all motions.
         """
-        return sum(name not in self.measured for name in names)
+        return len(self._unknown(places, _MEASURED))
 
-    def measure(self, names: list[bytes], ask: Callable[[NDArray[np.intp]], PathCheck]) -> PathCheck:
+    def measure(self, places: NDArray[np.intp], ask: Callable[[NDArray[np.intp]], PathCheck]) -> PathCheck:
         """The figures of a path; they are asked only for motions that were not measured yet.
 
         Parameters
         ----------
-        names : list of bytes
+        places : (n,) array of int
             Of all motions.
         ask : callable
             Takes rows (k,) of motions, and gives back their figures.
         """
-        new = np.array([k for k, name in enumerate(names) if name not in self.measured], dtype=np.intp)
+        new = self._unknown(places, _MEASURED)
         if len(new):
             mine, before = ask(new), self.figures
             clearance = {name: min(value, before.clearance.get(name, value)) for name, value in mine.clearance.items()}
             self.figures = PathCheck(None, max(mine.gouge, before.gouge), clearance)
-            self.measured.update(names[k] for k in new)
+            self._proven[places[new]] |= 1 << _MEASURED
         return self.figures
+
+    def _unknown(self, places: NDArray[np.intp], bit: int) -> NDArray[np.intp]:
+        """Rows of the motions of which something is not known."""
+        return np.flatnonzero((self._proven[places] >> bit) & 1 == 0)
+
+
+def _keys_of(rows: Array) -> NDArray[np.uint64]:
+    """A key for each row of numbers, (n,): the same for the same numbers, and hardly ever for others."""
+    bits = np.ascontiguousarray(rows + 0.0).view(np.uint64)  # -0 is 0
+    keys = np.zeros(len(rows), dtype=np.uint64)
+    for column in bits.T:
+        keys = (keys ^ column) * _ODD
+        keys ^= keys >> np.uint64(29)
+    return keys
 
 
 def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowance: float = 0.0, *, most: float = 20.0,
@@ -162,17 +204,17 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
     """
     moves = segment_motions(path.cl, path.axis[0])
     known = known or ProvenMotions()
-    names = [row.tobytes() for row in moves[:, :2]]
+    places = known.enter(moves)
     if len(moves) > _LONG:
         refused = _refuse_early(tool, groups, moves)
         if refused is not None:
             return PathCheck(refused)
-        allow(_ALLOWED * known.count_new(names))
+        allow(_ALLOWED * known.count_new(places))
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     witness, blocked = None, np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        rows = known.find_blocked(number, names,
+        rows = known.find_blocked(number, places,
                                   lambda some: _find_blocked(tool, group, moves[some], group.required))  # noqa: B023
         into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
         if not len(rows) and not len(into):
@@ -186,7 +228,7 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
             return PathCheck(witness)
     if witness is not None:
         return PathCheck(witness, blocked=np.flatnonzero(blocked))
-    return known.measure(names, lambda some: _measure(tool, groups, moves[some], allowance, most, progress))
+    return known.measure(places, lambda some: _measure(tool, groups, moves[some], allowance, most, progress))
 
 
 def _measure(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array, allowance: float, most: float,
