@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from toolaxis import Tool
+from toolaxis.cldata.toolpath import Motion
 from toolaxis.search import fixed_axis, path_check
 from toolaxis.work import Budget, limit_work
 
@@ -100,3 +101,18 @@ def test_motions_are_found_again_to_the_last_digit(monkeypatch):
         assert len(blocked) == 2
         left = known.find_blocked(1, known.enter(moves), lambda some: np.arange(len(some)))
         assert set(left) >= set(blocked) and (same_key or len(left) == 2)
+
+
+def test_no_depth_is_looked_for_beyond_the_deepest_that_may_be(walled, monkeypatch):
+    job, path = walled
+    moves = path_check.segment_motions(path.cl, path.axis[0])
+    group = job.groups[0]
+    first = next(k for k in range(0, len(moves), path_check._STRIDE) if path.kind[k + 1] == Motion.CUT)
+    assert first < 10 * path_check._STRIDE
+    moves[first, 0] -= 0.5 * AXIS  # deeper than may be
+    asked, bounds = [], path_check.lower_bounds
+    monkeypatch.setattr(path_check, "_BATCH", 10)
+    monkeypatch.setattr(path_check, "lower_bounds", lambda *some: asked.append(len(some[2])) or bounds(*some))
+    depth = path_check.greatest_depth(TOOL, group, moves, 0.0)
+    assert depth == pytest.approx(-group.required[0], rel=1e-9)
+    assert len(moves) > 100 and sum(asked) == 10

@@ -11,7 +11,7 @@ from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.job.planning.sub_surfaces import by_reach, shrink_refused
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
+from toolaxis.regions.divide_by_reach import ReachDivision, _parts, divide_by_reach
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.fixed_axis import FaceProblem, task
 from toolaxis.shape.face import Face
@@ -128,3 +128,11 @@ def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(sc
 def test_nobody_is_asked_where_the_division_is_given(scenes) -> None:
     made = ta.plan(mushroom(scenes.plate), "ball:3", 0.1, faces=[1], regions=1, workers=1)
     assert made.outcome == "incomplete" and len(made.operations) == 1
+
+
+def test_a_hole_of_no_area_is_no_hole_of_the_rest():
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    hole = np.array([[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [2.0, 1.0]])
+    nothing = np.array([[3.0, 1.0], [3.0, 2.0], [3.0, 3.0]])
+    assert [len(part) for part in _parts((square, hole, nothing))] == [2]
+

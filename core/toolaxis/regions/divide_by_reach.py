@@ -499,11 +499,12 @@ def _unite(loops: Loops, beside: Loops) -> Loops:
 
 
 def _parts(loops: Loops) -> list[Loops]:
-    """Polygons that hold anything."""
+    """Polygons that hold anything, with the holes that leave anything out."""
     if not loops:
         return []
     whole = sum(abs(signed_area(loop)) for loop in loops)
-    return [part for part in outer_with_holes(loops) if _area(part) > _NOTHING * whole]
+    kept = (part for part in outer_with_holes(loops) if _area(part) > _NOTHING * whole)
+    return [(part[0], *(hole for hole in part[1:] if abs(signed_area(hole)) > _NOTHING**2 * whole)) for part in kept]
 
 
 def _area(loops: Loops) -> float:

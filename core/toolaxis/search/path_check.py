@@ -272,7 +272,8 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     """
     spread = np.arange(0, len(moves), _STRIDE)
     order = np.concatenate([spread, np.setdiff1d(np.arange(len(moves)), spread)])
-    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE)[0]
+    enough = float(group.required[0])
+    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE, enough)[0]
     return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
 
 
@@ -406,13 +407,16 @@ def _sort_lowest_first(moves: Array) -> Array:
 
 
 def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,
-                 resolution: float) -> Array:
+                 resolution: float, enough: float = -np.inf) -> Array:
     """Lower bounds (3,) of the least distance of components to a group over all motions, up to `most`.
 
-    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.
+    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.  Where
+    all components come as near as is enough, nothing nearer is looked for.
     """
     asked, best = _only(group, components), np.broadcast_to(np.asarray(most, dtype=float), 3)
     for first in range(0, len(moves), _BATCH):
         least = lower_bounds(group.cells, tool, moves[first:first + _BATCH], best, resolution, asked).lower.min(axis=0)
         best = np.where(least < best - resolution, least, best)
+        if (best[list(components)] - resolution <= enough).all():
+            break
     return np.asarray(best - resolution)
