@@ -1,5 +1,7 @@
 """APT CL files: what is written is read back, and what is broken is refused with its line."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.post import apt
 from toolaxis.post.apt import apt_text, cutter_statement, locations_text
 from toolaxis.post.read_apt import read_apt
 from toolaxis.tools.tool import Tool
@@ -155,3 +158,18 @@ HEAD = "UNITS/MM\nMULTAX/ON\nGOTO/0,0,0,0,0,1\n"
 def test_broken_files_are_refused(text: str, said: str) -> None:
     with pytest.raises(InvalidInput, match=said):
         read_apt(text)
+
+
+def test_a_long_path_is_written_some_points_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    count = 60_000
+    x = np.linspace(0.0, 500.0, count)
+    tips = np.column_stack([x, np.sin(x), np.cos(x)])
+    up = np.tile([0.0, 0.0, 1.0], (count, 1))
+    path = ToolPath(tips, tips, up, up, np.full(count, Motion.CUT, dtype=np.int8), np.array([0, count]))
+    tracemalloc.start()
+    text = apt_text(path, TOOL, "op01-face1", 1000.0, 8000.0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 4 * len(text)
+    monkeypatch.setattr(apt, "_BLOCK", 7)
+    assert apt_text(path, TOOL, "op01-face1", 1000.0, 8000.0) == text

@@ -7,7 +7,9 @@ motion words themselves.
 """
 
 from collections.abc import Iterator
+from itertools import chain, islice
 from math import degrees, inf, isfinite
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +23,8 @@ from toolaxis.tools.tool import Tool
 Array = NDArray[np.float64]
 
 COLUMNS = 72
+#: Points, and lines, that are written at a time: a path may have millions.
+_BLOCK = 10_000
 
 
 def _wrap_statement(line: str) -> str:
@@ -122,8 +126,10 @@ def locations_text(found: CutterLocations, name: str, tool: Tool | None = None) 
 
 def _whole(name: str, cutter: str, spindle: float, motions: Iterator[str]) -> str:
     turning = [f"SPINDL/RPM,{spindle:g},CLW"] if spindle > 0 else []
-    lines = [f"PARTNO/{_plain(name)}", "UNITS/MM", "MULTAX/ON", *filter(None, [cutter]), "LOADTL/1", *turning, *motions]
-    return "\n".join([*map(_wrap_statement, lines), *(["SPINDL/OFF"] if turning else []), "FINI", ""])
+    head = [f"PARTNO/{_plain(name)}", "UNITS/MM", "MULTAX/ON", *filter(None, [cutter]), "LOADTL/1", *turning]
+    lines = map(_wrap_statement, chain(head, motions))
+    joined = ["\n".join(block) for block in iter(lambda: list(islice(lines, _BLOCK)), [])]
+    return "\n".join([*joined, *(["SPINDL/OFF"] if turning else []), "FINI", ""])
 
 
 def _motions(path: ToolPath, rates: Array, from_above: bool) -> Iterator[str]:
@@ -132,8 +138,7 @@ def _motions(path: ToolPath, rates: Array, from_above: bool) -> Iterator[str]:
     passes = 0
     before = -1
     fed = inf
-    for index, (tip, axis, kind, rate) in enumerate(zip(path.cl.tolist(), path.axis.tolist(), path.kind.tolist(),
-                                                        rates.tolist(), strict=True)):
+    for index, (tip, axis, kind, rate) in enumerate(_rows(path.cl, path.axis, path.kind, rates)):
         if index in starts:
             passes += 1
             yield f"PPRINT/PASS {passes}"
@@ -146,3 +151,9 @@ def _motions(path: ToolPath, rates: Array, from_above: bool) -> Iterator[str]:
             fed = rate
             yield f"FEDRAT/MMPM,{rate:g}"
         yield "GOTO/" + ",".join([*(_number(v, 6) for v in tip), *(_number(v, 9) for v in axis)])
+
+
+def _rows(*columns: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
+    """Rows of arrays as plain numbers, some at a time: as objects they take ten times the room."""
+    for first in range(0, len(columns[0]), _BLOCK):
+        yield from zip(*(column[first:first + _BLOCK].tolist() for column in columns), strict=True)
