@@ -273,7 +273,7 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     spread = np.arange(0, len(moves), _STRIDE)
     order = np.concatenate([spread, np.setdiff1d(np.arange(len(moves)), spread)])
     enough = float(group.required[0])
-    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE, enough)[0]
+    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE / 2, enough)[0]
     return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
 
 
