@@ -73,3 +73,16 @@ def test_passes_lie_closer_where_a_skin_would_stay_high(monkeypatch: pytest.Monk
     assert share_high(op.face, op.path) <= OVERLOOKED
     assert 1.0 in tried and min(tried) < 1.0, "as laid at first more would stay than may"
     assert ta.verify(made).passed
+
+
+def test_places_on_two_crumbs_far_apart_take_little_memory() -> None:
+    """Found: what was left at two ends of a skin was looked at with so many places that memory ran out."""
+    skin = next(face for face in step().faces if face.members)
+    u0, u1, v0, v1 = skin.bounds
+    corner = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * 0.01 * (u1 - u0)
+    low, high = np.array([u0 + 0.1, v0 + 0.1]), np.array([u1 - 0.5, v1 - 0.5])
+    crumbs = skin.trimmed((corner + low, corner + high))
+    found = fixed_axis._scattered_places(crumbs, 40_000)
+    assert 0 < len(found) < 2000 and crumbs.contains(found).all()
+    many = fixed_axis._scattered_places(skin, 40_000)
+    assert len(many) == 40_000 and len(np.unique(many, axis=0)) == 40_000

@@ -108,9 +108,9 @@ _LEFT_OUT = 3
 _LEAVINGS = 2
 #: Where further passes make the cut so many times as long, the other feed is tried too.
 _LONGER = 1.02
-#: Places along a side of a grid that tells how much of its range a face fills, and places on the face that tell how
-#: much stays high between passes over a skin.
-_COARSE, _SAMPLES = 60, 40_000
+#: Places on a face that tell how much stays high between passes over a skin; of how many places of its range they are
+#: taken at most, and how many of these at once.
+_SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
 #: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
 _SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
 #: Where that is too much, passes are laid for this share of the scallop height, and again, down to the second share.
@@ -704,10 +704,11 @@ def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
     worth = job.worth
     if worth.face.surface.stand_in is None:
         return False
-    filled = max(len(worth.face.grid(_COARSE, _COARSE)), 1) / _COARSE**2
-    uv = _scattered_places(worth.face, int(_SAMPLES / filled))
+    uv = _scattered_places(worth.face, _SAMPLES)
     for zone in made.zones:
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
+    if not len(uv):
+        return False
     d = worth.face.evaluate(uv)
     area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
     high = Excess(worth.face, worth.tool, made.path, worth.allowance + FACTOR * worth.scallop)(uv) > 0
@@ -715,12 +716,19 @@ def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
 
 
 def _scattered_places(face: Face, count: int) -> Array:
-    """Parameters of a face, (n, 2), of so many places over its range: along no line, as ridges of straight passes are,
-    which would lie between the lines of a grid, or on them."""
+    """Parameters of a face, (n, 2), of so many places on it, or fewer where it fills next to nothing of its range.
+
+    They lie along no line, as ridges of straight passes do, which would lie between the lines of a grid, or on them.
+    """
     u0, u1, v0, v1 = face.bounds
-    share = np.arange(1, count + 1)[:, None] * _SCATTERED % 1.0
-    uv = np.array([u0, v0]) + share * np.array([u1 - u0, v1 - v0])
-    return np.asarray(uv[face.contains(uv)])
+    found: list[Array] = []
+    for first in range(0, _MOST_SCATTERED, _AT_ONCE):
+        share = np.arange(first + 1, first + _AT_ONCE + 1)[:, None] * _SCATTERED % 1.0
+        uv = np.array([u0, v0]) + share * np.array([u1 - u0, v1 - v0])
+        found.append(uv[face.contains(uv)])
+        if sum(map(len, found)) >= count:
+            break
+    return np.concatenate(found)[:count]
 
 
 def _prove_without_refused(job: FaceProblem, placed: Layout,
