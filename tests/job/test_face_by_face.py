@@ -160,3 +160,17 @@ def test_an_impeller_skin_of_other_people(shared_parts: Path) -> None:
     asked = sum(op.face.area for op in made.operations)
     assert area_machined(made.operations) > 0.9 * asked
     assert {op.face.numbers for op in made.operations} == {(2, 7, 9)}, "as one skin"
+
+
+def test_a_piece_that_is_all_of_its_face_keeps_its_name_in_the_folder(tmp_path: Path) -> None:
+    """Found: the judge called it by its face's name, under which no operation of the plan stands."""
+    part = ta.Part.from_faces(strip((100.0, 101.0), (0.0, 36.0)))
+    made = ta.plan(part, TOOL, HEIGHT, method="normal", workers=1)
+    (op,) = made.operations
+    named = replace(op, face=op.face.trimmed(op.face.trims, op.face.label + "a"))
+    with stage_folder(tmp_path / "plan") as stage:
+        write_plan(replace(made, operations=(named,)), stage.folder)
+        stage.publish()
+    (again,) = read_plan(tmp_path / "plan").operations
+    assert again.name == named.name != op.name
+    assert again.face.area == pytest.approx(op.face.area)

@@ -231,9 +231,11 @@ def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Doc
 
 def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Tool],
                     path: ToolPath | None) -> Operation:
-    face = _smooth_piece(part, document["face"], document["label"])
+    face, label = _smooth_piece(part, document["face"], document["label"]), document["label"]
     if document["region"] is not None:
-        face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), document["label"])
+        face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), label)
+    elif face.label != label:  # a piece that is all of its face
+        face = face.trimmed(face.trims, label)
     frame = document["work_coordinates"]
     axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
     zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"]),
