@@ -272,9 +272,14 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     """
     spread = np.arange(0, len(moves), _STRIDE)
     order = np.concatenate([spread, np.setdiff1d(np.arange(len(moves)), spread)])
-    enough = float(group.required[0])
-    nearest = _bound_least(tool, group, moves[order], (0,), allowance + 2 * FINE, FINE / 2, enough)[0]
-    return float(depth_from_distance(tool, np.maximum(nearest, group.required[0]), allowance))
+    limit, cutter = float(group.required[0]), _only(group, (0,))
+    nearest = allowance + 2 * FINE
+    for first in range(0, len(order), _BATCH):
+        if nearest <= limit:  # it is proven that none goes deeper
+            break
+        some = moves[order[first:first + _BATCH]]
+        nearest = float(lower_bounds(group.cells, tool, some, nearest, FINE, cutter).lower[:, 0].min())
+    return float(depth_from_distance(tool, np.array(max(nearest, limit)), allowance))
 
 
 def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
@@ -407,16 +412,13 @@ def _sort_lowest_first(moves: Array) -> Array:
 
 
 def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,
-                 resolution: float, enough: float = -np.inf) -> Array:
+                 resolution: float) -> Array:
     """Lower bounds (3,) of the least distance of components to a group over all motions, up to `most`.
 
-    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.  Where
-    all components come as near as is enough, nothing nearer is looked for.
+    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.
     """
     asked, best = _only(group, components), np.broadcast_to(np.asarray(most, dtype=float), 3)
     for first in range(0, len(moves), _BATCH):
         least = lower_bounds(group.cells, tool, moves[first:first + _BATCH], best, resolution, asked).lower.min(axis=0)
         best = np.where(least < best - resolution, least, best)
-        if (best[list(components)] - resolution <= enough).all():
-            break
     return np.asarray(best - resolution)
