@@ -44,10 +44,10 @@ def test_a_face_with_a_crease_is_machined_but_for_the_crease(face, monkeypatch):
 def test_places_are_none_where_much_is_in_the_way_or_nothing_is(face):
     axis = np.array([[0.0, np.sin(0.2), np.cos(0.2)]])
     deep = fixed_axis.task(creased(width=12.0, depth=25.0), TOOL, SCALLOP).feasibility
-    assert not len(few.few_in_the_way(deep, axis).points)
+    assert not len(few.find_few_in_the_way(deep, axis).points)
     plain = fixed_axis.task(creased(depth=0.0), TOOL, SCALLOP).feasibility
-    assert not len(few.few_in_the_way(plain, axis).points)
-    found = few.few_in_the_way(fixed_axis.task(face, TOOL, SCALLOP).feasibility, axis)
+    assert not len(few.find_few_in_the_way(plain, axis).points)
+    found = few.find_few_in_the_way(fixed_axis.task(face, TOOL, SCALLOP).feasibility, axis)
     assert len(found.points)
     assert np.abs(found.points[:, :2] - AT).max() < 30
 

@@ -82,7 +82,7 @@ def test_places_on_two_crumbs_far_apart_take_little_memory() -> None:
     corner = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * 0.01 * (u1 - u0)
     low, high = np.array([u0 + 0.1, v0 + 0.1]), np.array([u1 - 0.5, v1 - 0.5])
     crumbs = skin.trimmed((corner + low, corner + high))
-    found = fixed_axis._scattered_places(crumbs, 40_000)
+    found = fixed_axis._scatter_places(crumbs, 40_000)
     assert 0 < len(found) < 2000 and crumbs.contains(found).all()
-    many = fixed_axis._scattered_places(skin, 40_000)
+    many = fixed_axis._scatter_places(skin, 40_000)
     assert len(many) == 40_000 and len(np.unique(many, axis=0)) == 40_000

@@ -32,7 +32,7 @@ _COARSE, _FINE, _BESIDE = 24, 256, 4
 _AROUND = 1.5
 
 
-def few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
+def find_few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
     """The places of a face at which something is in the way of an axis, of the first for which they are few.
 
     Parameters
@@ -70,7 +70,7 @@ def few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
     return LeftPlaces(points, _AROUND * float(max(np.median(apart), feasibility.tool.radius)))
 
 
-def axes_worth_a_look(ledger: AxisTable, starts: Iterable[Array]) -> Array:
+def list_axes_to_try(ledger: AxisTable, starts: Iterable[Array]) -> Array:
     """Axes that angles allow and something is in the way of, those first that were named, then those where it is least.
 
     Parameters

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,7 +35,7 @@ from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.cost import MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.few_in_the_way import axes_worth_a_look, few_in_the_way
+from toolaxis.search.few_in_the_way import find_few_in_the_way, list_axes_to_try
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
 from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
@@ -73,6 +73,8 @@ from toolaxis.tools.tool import Tool
 from toolaxis.work import OutOfWork, allow_proof, better_may_exist, is_out_of_work, up_to
 
 Array = NDArray[np.float64]
+#: An orientation, and its passes, which were proven; None where there is no axis.
+FoundAxis: TypeAlias = tuple[Orientation, ToolPath | None]
 
 
 class Method(NamedTuple):
@@ -415,8 +417,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     return find_axis(job, method, starts)[0]
 
 
-def find_axis(job: FaceProblem, method: str = "sphere",
-              starts: ArrayLike | None = None) -> tuple[Orientation, ToolPath | None]:
+def find_axis(job: FaceProblem, method: str = "sphere", starts: ArrayLike | None = None) -> FoundAxis:
     """The axis that `best_axis` finds for a task, and its passes, which were proven; None where there is no axis.
 
     Where the shorter of several patterns of passes is to be taken, each has its own axis.
@@ -441,7 +442,7 @@ def find_axis(job: FaceProblem, method: str = "sphere",
     return found
 
 
-def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> tuple[Orientation, ToolPath | None]:
+def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> FoundAxis:
     """The axis and its passes for passes of one pattern; where few places refuse every axis, these are left."""
     first = np.empty((0, 3)) if starts is None else unit(as_rows(starts, 3, "starts"))
     result, ledger = _search_once(job, method, first)
@@ -449,7 +450,7 @@ def _find_axis(job: FaceProblem, method: str, starts: ArrayLike | None) -> tuple
         if not _may_leave_places(result[0], method):
             break
         try:
-            few = few_in_the_way(ledger.feasibility, axes_worth_a_look(ledger, first))
+            few = find_few_in_the_way(ledger.feasibility, list_axes_to_try(ledger, first))
         except OutOfWork:
             break
         if not len(few.points):
@@ -466,11 +467,10 @@ def _may_leave_places(found: Orientation, method: str) -> bool:
     return lost and METHODS[method].next_axis is next_in_lobe
 
 
-def _search_once(job: FaceProblem, method: str,
-                 first: Array) -> tuple[tuple[Orientation, ToolPath | None], AxisTable]:
+def _search_once(job: FaceProblem, method: str, first: Array) -> tuple[FoundAxis, AxisTable]:
     """The axis and its passes as they are found at once, and all axes that were looked at."""
     ledger = AxisTable(job.feasibility, job.worth, job.progress, first)
-    result: tuple[Orientation, ToolPath | None] | None = None
+    result: FoundAxis | None = None
     try:
         impossible = spread_too_wide(job.feasibility) or corner_too_large(job.feasibility)
         if impossible:
@@ -491,7 +491,7 @@ def _search_once(job: FaceProblem, method: str,
                             evaluations=ledger.evaluations, map=ledger.map()), None), ledger
 
 
-def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Orientation, ToolPath | None]:
+def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> FoundAxis:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
     how = METHODS[method]
     if how.next_axis is None:
@@ -510,7 +510,7 @@ def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> tuple[Ori
     return first_proven(job, ledger, found, how)
 
 
-def _note_end(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, ToolPath | None]:
+def _note_end(found: FoundAxis) -> FoundAxis:
     """An axis that is proven, with the word that the limit of work ended the search for a better one."""
     words, (result, path) = better_may_exist(), found
     known = words in result.reasons
@@ -518,7 +518,7 @@ def _note_end(found: tuple[Orientation, ToolPath | None]) -> tuple[Orientation, 
 
 
 def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                 method: Method = METHODS["sphere"]) -> tuple[Orientation, ToolPath | None]:
+                 method: Method = METHODS["sphere"]) -> FoundAxis:
     """The best candidate that the proof accepts, with its passes, or why there is none.
 
     Parameters
@@ -544,7 +544,7 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
 
 
 def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
-                    method: Method) -> tuple[Orientation, ToolPath | None]:
+                    method: Method) -> FoundAxis:
     """The first candidate that the proof accepts, with its passes, or why there is none."""
     refused: list[Refusal] = []
     for k, one in enumerate(found):
@@ -640,7 +640,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     one : CountedAxis
     """
     feed = FEEDS[one.feed]
-    stuck = _way_up_blocked(job, one.axis)
+    stuck = _find_blocked_way_up(job, one.axis)
     if stuck is not None:
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(stuck), None)
     try:
@@ -674,7 +674,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     return CheckedCandidate(one, found, proof, path, made.longer)
 
 
-def _way_up_blocked(job: FaceProblem, axis: Array) -> Violation | None:
+def _find_blocked_way_up(job: FaceProblem, axis: Array) -> Violation | None:
     """What stands in the way up from every contact, as the opposite side of a duct; None where it is free from some.
 
     Every path comes down along the axis to its first pass: to lay and prove all of them first would take long.
@@ -704,7 +704,7 @@ def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
     worth = job.worth
     if worth.face.surface.stand_in is None:
         return False
-    uv = _scattered_places(worth.face, _SAMPLES)
+    uv = _scatter_places(worth.face, _SAMPLES)
     for zone in made.zones:
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
     if not len(uv):
@@ -715,7 +715,7 @@ def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
     return bool(area[high].sum() > OVERLOOKED * area.sum())
 
 
-def _scattered_places(face: Face, count: int) -> Array:
+def _scatter_places(face: Face, count: int) -> Array:
     """Parameters of a face, (n, 2), of so many places on it, or fewer where it fills next to nothing of its range.
 
     They lie along no line, as ridges of straight passes do, which would lie between the lines of a grid, or on them.

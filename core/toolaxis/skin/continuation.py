@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import stations, walk
+from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.faces_in_view import FacesInView
 
 Array = NDArray[np.float64]
@@ -29,6 +30,24 @@ class Heights(NamedTuple):
     value: Array
     slope: Array
     bend: Array
+
+
+def heights_of(points: Derivatives, frame: Array, origin: Array) -> Heights:
+    """Heights of points over a plane, and their derivatives with the place in it.
+
+    Parameters
+    ----------
+    points : Derivatives
+        With the place in the plane.
+    frame : (3, 3) array
+        Coordinates in the plane and height are frame @ (p - origin).
+    origin : (3,) array
+        mm
+    """
+    up = frame[2]
+    suu, suv, svv = points.suu @ up, points.suv @ up, points.svv @ up
+    bend = np.stack([np.column_stack([suu, suv]), np.column_stack([suv, svv])], axis=1)
+    return Heights((points.point - origin) @ up, np.column_stack([points.su @ up, points.sv @ up]), bend)
 
 
 class _Feet(NamedTuple):
@@ -69,7 +88,7 @@ class Continuation:
     width: float
     rise: float
 
-    def merge(self, places: Array, spline: Heights) -> Heights:
+    def blend_heights(self, places: Array, spline: Heights) -> Heights:
         """Heights beyond the outline: tangent planes near it, those of a spline from the end of the band on.
 
         Parameters
@@ -111,23 +130,19 @@ class Continuation:
     def _planes(self, places: Array, feet: _Feet) -> Heights:
         """Tangent planes at the nearest places of the outline; their third derivatives along it are left out."""
         d = self.view.evaluate(feet.place, self.view.nearest(feet.place))
-        up = self.frame[2]
-        slope = np.column_stack([d.su @ up, d.sv @ up])
-        suu, suv, svv = (second @ up for second in (d.suu, d.suv, d.svv))
-        bend = np.stack([np.column_stack([suu, suv]), np.column_stack([suv, svv])], axis=1)
+        height, slope, bend = heights_of(d, self.frame, self.origin)
         away, way = places - feet.place, feet.way
         turning = np.einsum("nij,nj->ni", bend, way)  # of the slope, a step farther along the line
         climb = (away * slope).sum(axis=1)
         share = 1.0 / (1.0 + np.abs(climb) / self.rise)
         flatter = share**2
-        along = (slope * way).sum(axis=1)
+        along, bent = (slope * way).sum(axis=1), (turning * way).sum(axis=1)
         aside = slope - along[:, None] * way + (away * turning).sum(axis=1)[:, None] * way
-        turned = turning - (turning * way).sum(axis=1)[:, None] * way
-        curved = ((turning * way).sum(axis=1)[:, None, None] * _outer(way, way)
+        turned = turning - bent[:, None] * way
+        curved = (bent[:, None, None] * _outer(way, way)
                   + flatter[:, None, None] * (_outer(turned, way) + _outer(way, turned))
                   - (2 * np.sign(climb) * share**3 / self.rise)[:, None, None] * _outer(aside, aside))
-        height = (d.point - self.origin) @ up + climb * share
-        return Heights(height, along[:, None] * way + flatter[:, None] * aside, curved)
+        return Heights(height + climb * share, along[:, None] * way + flatter[:, None] * aside, curved)
 
     def _feet(self, places: Array) -> _Feet:
         """The nearest places on the outline."""

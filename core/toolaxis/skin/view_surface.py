@@ -15,7 +15,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
-from toolaxis.skin.continuation import Continuation, Heights
+from toolaxis.skin.continuation import Continuation, heights_of
 from toolaxis.skin.covered_parts import Loops, places_in, polygon_area
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
@@ -170,14 +170,11 @@ class ViewSurface(NurbsSurface):
 
     def _carry_on(self, places: Array, spline: Derivatives, beyond: NDArray[np.bool_]) -> None:
         """Put the faces' tangent planes in the place of the spline next to the outline."""
-        up = self.frame[2]
-        level = [every[beyond] @ up for every in spline]
-        bend = np.stack([np.column_stack([level[3], level[4]]), np.column_stack([level[4], level[5]])], axis=1)
-        told = Heights(level[0] - self.origin @ up, np.column_stack(level[1:3]), bend)
-        made = self._continuation.merge(places[beyond], told)
+        told = heights_of(Derivatives(*(every[beyond] for every in spline)), self.frame, self.origin)
+        made = self._continuation.blend_heights(places[beyond], told)
+        value, slope, bend = (new - old for new, old in zip(made, told, strict=True))
         along = np.linalg.inv(self.frame)[:, 2]
-        moves = (made.value - told.value, *(made.slope - told.slope).T, made.bend[:, 0, 0] - bend[:, 0, 0],
-                 made.bend[:, 0, 1] - bend[:, 0, 1], made.bend[:, 1, 1] - bend[:, 1, 1])
+        moves = value, slope[:, 0], slope[:, 1], bend[:, 0, 0], bend[:, 0, 1], bend[:, 1, 1]
         for every, move in zip(spline, moves, strict=True):
             every[beyond] += move[:, None] * along
 
