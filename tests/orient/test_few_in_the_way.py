@@ -52,6 +52,14 @@ def test_places_are_none_where_much_is_in_the_way_or_nothing_is(face):
     assert np.abs(found.points[:, :2] - AT).max() < 30
 
 
+def test_places_that_would_leave_no_contact_to_decide_are_none(face, monkeypatch):
+    """Found: on a strip narrower than the cutter nothing was left to decide about an axis, and the program failed."""
+    monkeypatch.setattr(few, "_AROUND", 100.0)
+    axis = np.array([[0.0, np.sin(0.2), np.cos(0.2)]])
+    assert not len(few.find_few_in_the_way(fixed_axis.task(face, TOOL, SCALLOP).feasibility, axis).points)
+    assert best_axis(face, TOOL, SCALLOP).outcome in ("infeasible", "not_found")
+
+
 def test_near_places_that_are_left_contacts_are_not_judged_but_passes_are_cut_out(face):
     axis = np.array([0.0, np.sin(0.2), np.cos(0.2)])
     own = fixed_axis.task(face, TOOL, SCALLOP).feasibility

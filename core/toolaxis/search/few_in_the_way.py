@@ -30,6 +30,8 @@ _LEANS = tuple(np.radians([10.0, 20.0]))
 _COARSE, _FINE, _BESIDE = 24, 256, 4
 #: How far around such a contact there may be others, in distances between contacts.
 _AROUND = 1.5
+#: Share of a face that may lie so near to them: the other contacts decide about the axis.
+_MOST_AROUND = 0.25
 
 
 def find_few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
@@ -44,13 +46,15 @@ def find_few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
     Returns
     -------
     LeftPlaces
-        None where they are more than `FEW` of it, or there is nothing in the way, or the face is small: its division
-        leaves what is tight as well.
+        None where they are more than `FEW` of it, or lie near more than `_MOST_AROUND` of it, or there is nothing in
+        the way, or the face is small: its division leaves what is tight as well.
     """
     if feasibility.face.area < _LARGE * feasibility.tool.radius**2:
         return NOTHING_LEFT
-    uv = feasibility.face.grid(_COARSE, _COARSE)
-    coarse = feasibility.contacts(uv, len(uv))
+    every = feasibility.face.grid(_COARSE, _COARSE)
+    coarse = feasibility.contacts(every, len(every))
+    if not len(coarse.uv):
+        return NOTHING_LEFT
     shares = (float(coarse.share[_in_the_way(feasibility, axis, coarse)].sum()) for axis in axes)
     best = next((k for k, share in enumerate(shares) if share <= FEW), None)
     if best is None:
@@ -67,7 +71,9 @@ def find_few_in_the_way(feasibility: Feasibility, axes: Array) -> LeftPlaces:
     if not len(points):
         return NOTHING_LEFT
     apart = cKDTree(fine.point).query(fine.point, k=_BESIDE + 1)[0][:, _BESIDE]
-    return LeftPlaces(points, _AROUND * float(max(np.median(apart), feasibility.tool.radius)))
+    found = LeftPlaces(points, _AROUND * float(max(np.median(apart), feasibility.tool.radius)))
+    around = feasibility.left.and_more(found).near(feasibility.face.evaluate(every).point)
+    return found if around.mean() <= _MOST_AROUND else NOTHING_LEFT
 
 
 def list_axes_to_try(ledger: AxisTable, starts: Iterable[Array]) -> Array:
