@@ -68,3 +68,10 @@ def test_a_failed_verdict_and_one_that_leaves_out_an_operation_stop(missing: boo
     assert texts[0] == "the verdict is FAIL: op01-face1" and "op01-face1: gouge 0.1 mm at face 1" in texts
     assert not any("not checked" in text for text in texts)
     assert any("says nothing of op02-face2" in text for text in texts) == missing
+
+
+@pytest.mark.parametrize(("count", "words"), [(1, "1 zone, 2.0 mm², is left"), (2, "2 zones, 4.0 mm², are left")])
+def test_one_zone_is_not_called_zones(count: int, words: str) -> None:
+    zone = SimpleNamespace(area=2.0, elsewhere=0.0)
+    found = warnings_of(plan(op(1, zones=(zone,) * count)), verdict(judged(1)))
+    assert [one.text for one in found] == [f"{words} to a clean-up tool"]

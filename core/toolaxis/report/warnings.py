@@ -104,4 +104,6 @@ def _of_clean_up(plan: Plan) -> list[Warning]:
     area, elsewhere = sum(zone.area for zone in zones), sum(zone.elsewhere for zone in zones)
     more = f", {elsewhere:.1f} mm² of it machined by other operations" if elsewhere > 0 else ""
     turned = " (turned copies not counted)" if copies else ""
+    if len(zones) == 1:
+        return [Warning("mind", f"1 zone, {area:.1f} mm², is left to a clean-up tool{more}{turned}")]
     return [Warning("mind", f"{len(zones)} zones, {area:.1f} mm², are left to a clean-up tool{more}{turned}")]
