@@ -20,7 +20,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.report.blades import blades_lines
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.path_check import prove
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part

@@ -13,7 +13,7 @@ from toolaxis.partition.face_division import Divider
 from toolaxis.partition.ring_division import RingDivision, candidates
 from toolaxis.partition.shared_axes import trade
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 
 FOLDER = Path(__file__).resolve().parent.parent / "examples"
 BODY = {"stickout": 70, "holder": [(16, 0), (16, 40), (25, 40), (25, 80)]}

@@ -21,7 +21,7 @@ from toolaxis.partition.shared_axes import cover
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, PlanInputs
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 
 TOOL = ta.Tool.torus(12, 1, stickout=60, holder=[(16, 0), (16, 40), (25, 40), (25, 80)])
 H, FEED = 0.02, 3000.0

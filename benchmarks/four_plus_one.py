@@ -22,7 +22,7 @@ from toolaxis.job.planning.timing import feeds_of
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.strategies.four_plus_one.clamp_angle import ClampSearch
 from toolaxis.strategies.four_plus_one.search import FourPlusOneSearch, clampable_angles
 from toolaxis.tools.tool import Tool

@@ -21,7 +21,7 @@ from toolaxis.errors import ToolAxisError
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.path.pass_layout import Layout, lay_out
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.strategies.roughness.feasible_area import critical_curvature, least_lean
 from toolaxis.strategies.roughness.paper_iteration import iterate_as_published
 from toolaxis.strategies.roughness.pass_constraints import OrientationRequirements, PassConstraints, spline_along_axes

@@ -20,7 +20,7 @@ import toolaxis as ta
 from toolaxis.plan.orientation import REASONS
 from toolaxis.search.direction_grid import spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.hemisphere import frame_of, search
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.sectors import mean_normal, roman_axis, sectors

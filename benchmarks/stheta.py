@@ -22,7 +22,7 @@ from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.feed.moving_axis_time import five_axis_time
 from toolaxis.machine.library import load_machine
 from toolaxis.numeric.corner_rounding import corner
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.skin.join import join
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.layers import along_blade

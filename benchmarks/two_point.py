@@ -34,7 +34,7 @@ from toolaxis.feed.moving_axis_time import five_axis_motion
 from toolaxis.machine.library import load_machine
 from toolaxis.plan.choices import FEEDS
 from toolaxis.report.figures.plots import GREY, VERMILION, bare, cutting_lines, figure
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import (
     STEEPEST,

@@ -13,7 +13,8 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.path.mending import FurtherPasses
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import FaceProblem, find_axis, task
+from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.fixed_axis import find_axis
 
 TOOL = ta.Tool.ball(diameter=8, stickout=40)
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
-from toolaxis.search.fixed_axis import evaluate_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.verify.task import VerificationTask as Judged
 from toolaxis.verify.verdict import judge
 

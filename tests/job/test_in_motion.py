@@ -13,7 +13,7 @@ from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.bodies import MachineBody
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.strategies.common.passes import beyond
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.machine_motion import MachineModel

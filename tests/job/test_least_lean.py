@@ -18,7 +18,7 @@ from toolaxis.messages.translate import translate
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.plan.plan import Plan
 from toolaxis.report.tables import lean_line
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.strategies.common.passes import plan_passes
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify import contact_leans

@@ -17,7 +17,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.report.figures.plan_overview import overview_picture
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.messages import place
 from toolaxis.shape.measure import mean_width
 

@@ -14,7 +14,7 @@ from toolaxis.job.planning.sub_surfaces import Target, by_axis
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 
 
 def net(height: float, nx: int = 6, ny: int = 6, size: tuple[float, float] = (24.0, 16.0)) -> np.ndarray:

@@ -17,7 +17,7 @@ from toolaxis.job.planning.planner import went_on
 from toolaxis.machine.limits import parse_limits
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest

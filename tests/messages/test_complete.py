@@ -45,7 +45,7 @@ NO_SENTENCES = {
     "defines entity #\f\f more than once: every number must stand for one entity; export the part again":
         "two entries, without and with further numbers",
     "face \f, \f mm wide on the mean, \f as a whole: \f": "the entry has the words of LEFT_OVER",
-    "\f % of the area lies at walls and \f": "the entry has the words of LEFT_OVER",
+    "\f % of the area lies at walls or in corners and \f": "the entry has the words of LEFT_OVER",
     "\f mm2 beside the held side \f": "the entry has the words of LEFT_OVER",
     "the \f \f at \f on \f, needed \f mm, \f": "two entries, that comes within and that meets",
 }

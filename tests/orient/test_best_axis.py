@@ -18,7 +18,8 @@ from toolaxis.plan.orientation import OUTCOMES, REASONS
 from toolaxis.progress import Progress
 from toolaxis.search import infeasibility as impossible
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import best_axis, evaluate_axis
 from toolaxis.search.hemisphere import CountedAxis, next_in_lobe, search
 from toolaxis.search.path_check import PathCheck, prove
 from toolaxis.shape.face import Face
@@ -207,7 +208,7 @@ def test_what_the_proof_refuses_is_not_given(make, monkeypatch):
         return PathCheck(Violation(GOUGE, 0.001, "1", distance=-0.003)) if len(calls) == 1 else prove(path, *rest,
                                                                                                       **more)
 
-    monkeypatch.setattr("toolaxis.search.fixed_axis.prove", strict)
+    monkeypatch.setattr("toolaxis.search.candidate_check.prove", strict)
     found = best_axis(face, TOOL, H)
     assert found.outcome == "feasible" and len(calls) == 2
     np.testing.assert_allclose(found.axis, calls[1])
@@ -228,7 +229,7 @@ def test_few_motions_that_the_proof_refuses_are_left_out(make, monkeypatch):
         return prove(path, *rest, **more)
 
     plain = best_axis(face, TOOL, H)
-    monkeypatch.setattr("toolaxis.search.fixed_axis.prove", strict)
+    monkeypatch.setattr("toolaxis.search.candidate_check.prove", strict)
     found = best_axis(face, TOOL, H)
     np.testing.assert_array_equal(found.axis, plain.axis)
     assert found.outcome == "feasible" and not any(reason.startswith("refused") for reason in found.reasons)

@@ -14,7 +14,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import rotation
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.shape.face import Face
 from toolaxis.skin.join import join
 from toolaxis.strategies.blade.clearance_limits import BladeSurroundings

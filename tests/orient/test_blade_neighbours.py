@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import label
 
 import toolaxis as ta
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.skin.join import join
 from toolaxis.strategies.blade.plan import BladeSearch, blade
 

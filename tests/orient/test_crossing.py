@@ -7,7 +7,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.job.planning.blade_clearances import tightest
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.search.link_heights import OVER, LinkClearance, height_over
 from toolaxis.strategies.common.links import LinkMotion
 from toolaxis.strategies.common.path_check import MovingLinkClearance
@@ -139,7 +139,7 @@ def test_links_at_a_large_scallop_height_pass_the_judge_between_boxes(sheet: ta.
 
 def test_passes_that_cannot_be_laid_refuse_the_axis_and_not_the_face(sheet: ta.Face,
                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    from toolaxis.search.fixed_axis import FaceProblem
+    from toolaxis.search.face_problem import FaceProblem
 
     laid, axes = FaceProblem.laid, []
 

@@ -1,12 +1,14 @@
 """A crease too tight for the cutter in a large face: it is left, and the rest is machined."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from toolaxis import Face, Tool, best_axis
 from toolaxis.feasibility.left_places import NOTHING_LEFT, LeftPlaces
+from toolaxis.search import face_problem, fixed_axis
 from toolaxis.search import few_in_the_way as few
-from toolaxis.search import fixed_axis
 
 TOOL, SCALLOP = Tool.torus(12, 2, stickout=60), 0.05
 #: Middle of the crease.
@@ -43,11 +45,11 @@ def test_a_face_with_a_crease_is_machined_but_for_the_crease(face, monkeypatch):
 
 def test_places_are_none_where_much_is_in_the_way_or_nothing_is(face):
     axis = np.array([[0.0, np.sin(0.2), np.cos(0.2)]])
-    deep = fixed_axis.task(creased(width=12.0, depth=25.0), TOOL, SCALLOP).feasibility
+    deep = face_problem.task(creased(width=12.0, depth=25.0), TOOL, SCALLOP).feasibility
     assert not len(few.find_few_in_the_way(deep, axis).points)
-    plain = fixed_axis.task(creased(depth=0.0), TOOL, SCALLOP).feasibility
+    plain = face_problem.task(creased(depth=0.0), TOOL, SCALLOP).feasibility
     assert not len(few.find_few_in_the_way(plain, axis).points)
-    found = few.find_few_in_the_way(fixed_axis.task(face, TOOL, SCALLOP).feasibility, axis)
+    found = few.find_few_in_the_way(face_problem.task(face, TOOL, SCALLOP).feasibility, axis)
     assert len(found.points)
     assert np.abs(found.points[:, :2] - AT).max() < 30
 
@@ -56,15 +58,15 @@ def test_places_that_would_leave_no_contact_to_decide_are_none(face, monkeypatch
     """Found: on a strip narrower than the cutter nothing was left to decide about an axis, and the program failed."""
     monkeypatch.setattr(few, "_AROUND", 100.0)
     axis = np.array([[0.0, np.sin(0.2), np.cos(0.2)]])
-    assert not len(few.find_few_in_the_way(fixed_axis.task(face, TOOL, SCALLOP).feasibility, axis).points)
+    assert not len(few.find_few_in_the_way(face_problem.task(face, TOOL, SCALLOP).feasibility, axis).points)
     assert best_axis(face, TOOL, SCALLOP).outcome in ("infeasible", "not_found")
 
 
 def test_near_places_that_are_left_contacts_are_not_judged_but_passes_are_cut_out(face):
     axis = np.array([0.0, np.sin(0.2), np.cos(0.2)])
-    own = fixed_axis.task(face, TOOL, SCALLOP).feasibility
+    own = face_problem.task(face, TOOL, SCALLOP).feasibility
     left = LeftPlaces(np.array([[*AT, -0.5]]), 20.0)
-    feasible = fixed_axis.replace(own, left=left)
+    feasible = replace(own, left=left)
     middle = np.array([[AT[0] + 1.5, AT[1]]]), np.array([[60.0, 100.0]])
     assert own.worst(axis, own.contacts(middle[0], 0)) is not None
     assert not len(feasible.contacts(middle[0], 0).uv) and len(feasible.contacts(middle[1], 0).uv)

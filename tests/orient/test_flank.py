@@ -9,7 +9,7 @@ from toolaxis.feasibility.violations import FREE
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.search.direction_grid import own_frame, spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.search.flank_axes import flank_axes
 from toolaxis.search.hemisphere import search
 from toolaxis.shape.face import Face

@@ -7,7 +7,7 @@ import pytest
 
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, match_lead, two_point_lead

@@ -14,7 +14,7 @@ from toolaxis.feed.continuous_ik import following
 from toolaxis.machine.library import load_machine
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.moving_axis import MovingCut
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.strategies.common.path_check import prove_moving
 from toolaxis.strategies.four_plus_one.clamp_angle import ClampSearch
 from toolaxis.strategies.four_plus_one.links import free_angles, on_the_circle

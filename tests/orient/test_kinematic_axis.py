@@ -16,7 +16,8 @@ from toolaxis.machine.limits import AllOf, Cone
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import best_axis, find_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import best_axis, find_axis
 from toolaxis.search.kinematic_axis import by_jerk, next_by_jerk
 from toolaxis.search.kinematic_setup import common_feed, pass_segments, reach_along_feed, rotary_grid
 from toolaxis.shape.face import Face

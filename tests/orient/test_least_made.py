@@ -8,7 +8,8 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.plan.choices import FEEDS
-from toolaxis.search.fixed_axis import FaceProblem, best_axis, task
+from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.fixed_axis import best_axis
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.rank_by_passes import _left as least_made_left
 from toolaxis.search.rank_by_passes import least_made

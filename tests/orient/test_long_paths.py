@@ -5,7 +5,7 @@ import pytest
 
 from toolaxis import Tool
 from toolaxis.cldata.toolpath import Motion
-from toolaxis.search import fixed_axis, path_check
+from toolaxis.search import face_problem, path_check
 from toolaxis.work import Budget, limit_work
 
 TOOL = Tool.torus(10, 2, stickout=40, holder=[(12, 0), (12, 20)])
@@ -15,7 +15,7 @@ AXIS = np.array([0.1, -0.5, 1.0]) / np.linalg.norm([0.1, -0.5, 1.0])
 @pytest.fixture(scope="module")
 def walled(make):
     part = make.floor_and_wall()
-    job = fixed_axis.task(part.faces[0], TOOL, 0.1, part=part)
+    job = face_problem.task(part.faces[0], TOOL, 0.1, part=part)
     return job, job.made(AXIS, "u")
 
 

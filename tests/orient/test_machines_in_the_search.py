@@ -11,7 +11,8 @@ from toolaxis.machine.axis import Drive, LinearAxis, RotaryAxis
 from toolaxis.machine.limits import Cone
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
-from toolaxis.search.fixed_axis import best_axis, evaluate_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import best_axis, evaluate_axis
 
 DRIVE = Drive(100.0, 1000.0, 10000.0)
 HOLDER = [(10.0, 0.0), (10.0, 40.0)]

@@ -13,7 +13,8 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.plan.choices import FEEDS
 from toolaxis.search.cost import MachiningCost
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import best_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import best_axis
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.time_estimate import TimeEstimate

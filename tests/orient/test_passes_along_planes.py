@@ -17,7 +17,9 @@ from toolaxis.path.rest_material import undercut
 from toolaxis.plan.choices import ISO, PLANES
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import describe_feed
-from toolaxis.search.fixed_axis import best_axis, check_candidate, task
+from toolaxis.search.candidate_check import check_candidate
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import best_axis
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool

@@ -10,7 +10,7 @@ from toolaxis.feasibility.violations import BACK, FREE, GOUGE, LIMITS, WANDERS, 
 from toolaxis.numeric.vectors import angle_between, perpendicular, unit
 from toolaxis.search.direction_grid import ring, spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.search.hemisphere import search
 from toolaxis.search.local_search import _lowest, count_row, polish, proven
 from toolaxis.shape.face import Face

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toolaxis import Tolerance, Tool
-from toolaxis.search import fixed_axis as indexed
+from toolaxis.search import face_problem
 from toolaxis.search import path_check as proof
 
 
@@ -25,7 +25,7 @@ def loosely(monkeypatch):
 def test_figures_are_never_worse_than_what_is_proven(loosely, make):
     part, tolerance = make.floor_and_wall(), Tolerance()
     tool = Tool.torus(10, 2, stickout=40, holder=[(12, 0), (12, 20)])
-    job = indexed.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
+    job = face_problem.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
     axis = np.array([0.1, -0.5, 1.0])
     found = proof.prove(job.made(axis / np.linalg.norm(axis), "u"), tool, job.groups)
     assert found.witness is None
@@ -36,7 +36,7 @@ def test_figures_are_never_worse_than_what_is_proven(loosely, make):
 def test_what_is_proven_once_is_not_asked_again_and_new_motions_are(make, monkeypatch):
     part, tolerance = make.floor_and_wall(), Tolerance()
     tool = Tool.torus(10, 2, stickout=40, holder=[(12, 0), (12, 20)])
-    job = indexed.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
+    job = face_problem.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
     axis = np.array([0.1, -0.5, 1.0])
     path = job.made(axis / np.linalg.norm(axis), "u")
     asked = []
@@ -62,7 +62,7 @@ def test_what_is_proven_once_is_not_asked_again_and_new_motions_are(make, monkey
 def test_the_depth_is_that_of_the_deepest_motion(make):
     part, tolerance = make.floor_and_wall(), Tolerance()
     tool = Tool.ball(10, stickout=40)
-    job = indexed.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
+    job = face_problem.task(part.faces[0], tool, 0.1, part=part, tolerance=tolerance)
     path = job.made(np.array([0.0, -np.sin(0.4), np.cos(0.4)]), "u")
     group, moves = job.groups[0], proof.segment_motions(path.cl, path.axis[0])
     cuts = moves[path.kind[1:] == 0]

@@ -15,7 +15,7 @@ from toolaxis.search.branch_and_bound import hunt
 from toolaxis.search.cost import MachiningCost
 from toolaxis.search.direction_grid import spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.search.hemisphere import search
 from toolaxis.search.sectors import mean_normal, roman_axis, sectors
 from toolaxis.shape.face import Face

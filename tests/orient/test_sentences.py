@@ -27,7 +27,8 @@ from toolaxis.feasibility.violations import (
 )
 from toolaxis.numeric.vectors import unit
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import evaluate_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import evaluate_axis
 from toolaxis.search.messages import Refusal, format_apart, main_first, sentence, why_none
 from toolaxis.search.path_check import worst_motion
 from toolaxis.shape.face import Face

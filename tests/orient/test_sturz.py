@@ -8,7 +8,7 @@ from toolaxis.contact.frame import contact_frame, lead_tilt_from_axis
 from toolaxis.feasibility.surroundings import SKIN, CheckSurfaces
 from toolaxis.machine.limits import parse_limits
 from toolaxis.path.moving_axis import MovingChart
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 from toolaxis.shape.nearest import nearest
 from toolaxis.strategies.common.links import LinkMotion
 from toolaxis.strategies.common.passes import make_passes

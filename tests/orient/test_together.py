@@ -4,7 +4,8 @@ import numpy as np
 
 import toolaxis as ta
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import FaceProblem, best_axis, task
+from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.fixed_axis import best_axis
 from toolaxis.search.shared_axis import SharedAxisSearch, together
 
 TOOL, H = ta.Tool.torus(12, 1), 0.1

@@ -11,7 +11,7 @@ from toolaxis.partition.face_division import Divider
 from toolaxis.partition.partition import regions
 from toolaxis.partition.ring_division import RingDivision, candidates, divide_in_rings
 from toolaxis.search.cost import CLEAN_UP
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=40)
 

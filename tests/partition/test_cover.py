@@ -9,7 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.partition.face_division import Divider
 from toolaxis.partition.shared_axes import cover, divide_with_shared_axes, knee, trade
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 
 
 @pytest.mark.parametrize("seed", range(8))

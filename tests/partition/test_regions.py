@@ -8,7 +8,8 @@ from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
 from toolaxis.partition.face_division import LINK, Divider
 from toolaxis.partition.partition import regions
-from toolaxis.search.fixed_axis import evaluate_axis, task
+from toolaxis.search.face_problem import task
+from toolaxis.search.fixed_axis import evaluate_axis
 
 TOOL = ta.Tool.torus(diameter=12, corner_radius=1)
 

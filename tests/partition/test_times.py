@@ -14,7 +14,7 @@ from toolaxis.partition.face_division import Divider
 from toolaxis.partition.partition import regions
 from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.time_estimate import TimeEstimate
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool

@@ -14,7 +14,7 @@ from toolaxis.partition.ring_division import divide_in_rings
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.path.rest_material import RestFinder, machined_regions
 from toolaxis.plan.plan import Plan
-from toolaxis.search.fixed_axis import task
+from toolaxis.search.face_problem import task
 
 pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"

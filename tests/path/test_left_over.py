@@ -17,7 +17,7 @@ from toolaxis.path.rest_material import (
     may_stay,
     undercut,
 )
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.tolerances import Tolerance
 from toolaxis.verify.task import VerificationTask as Judged
 from toolaxis.verify.verdict import SHARE, judge

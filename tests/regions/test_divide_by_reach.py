@@ -13,7 +13,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.regions.divide_by_reach import ReachDivision, _parts, divide_by_reach
 from toolaxis.regions.scene import ReachScene
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 

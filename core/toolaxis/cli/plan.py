@@ -207,8 +207,8 @@ def _say_left_over(op: Operation) -> None:
         count = f", {len(zones)} {'zone' if len(zones) == 1 else 'zones'}" if zones else ""
         elsewhere = sum(zone.elsewhere for zone in zones)
         also = f"; {elsewhere:.1f} mm2 of that are machined by other operations" if elsewhere > 0.05 else ""
-        say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls and is left to "
-            f"clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
+        say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls or in corners "
+            f"and is left to clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
         if AVOIDED in why or f"beside the {HELD_SIDE}" in why:
             say(f"toolaxis: face {op.face.label}: {why}")

@@ -14,7 +14,7 @@ from toolaxis.partition.guillotine import BestCosts, CheapestDivisions, Corners,
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.direction_grid import own_frame, ring, spiral
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 

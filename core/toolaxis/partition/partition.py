@@ -12,7 +12,7 @@ from toolaxis.partition.bosses import distances
 from toolaxis.partition.face_division import INDEX_COST, MOST, Divider, Regions
 from toolaxis.partition.ring_division import Distance, candidates, slivers
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.fixed_axis import FaceProblem, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -93,7 +93,7 @@ def regions(job: FaceProblem, count: int | str | None = None, index_cost: float 
     Parameters
     ----------
     job : FaceProblem
-        From `toolaxis.search.fixed_axis.task`; with the objective "time" the division goes by time, else by length.
+        From `toolaxis.search.face_problem.task`; with the objective "time" the division goes by time, else by length.
     count, progress
         As for `partition`.
     index_cost : float, optional

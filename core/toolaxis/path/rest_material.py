@@ -81,14 +81,16 @@ class Excess:
         self._face, self._tool, self._height = face, tool, height
         self._swept = sweep_motions(path.axis[0], *(motions_of(path) if motions is None else motions))
 
-    def __call__(self, uv: Array) -> Array:
+    def __call__(self, uv: Array, most: float = _FAR) -> Array:
         """Numbers (n,) at parameters (n, 2), beyond the face too: above zero where more than that height is left.
 
         Parameters
         ----------
         uv : (n, 2) array
+        most : float
+            Up to how much more is told, mm.
         """
-        return self._distance(self._raise_points(uv), _FAR)
+        return self._distance(self._raise_points(uv), most)
 
     def whole(self, middle: Array, around: Array) -> Bools:
         """Which cells of the face are left all over: their middles are farther from what is removed than they reach.

@@ -23,7 +23,7 @@ from toolaxis.regions.prices import fits_hollows
 from toolaxis.regions.reach_screen import screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.direction_grid import ring
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.shape.measure import mean_width
 from toolaxis.tools.tool import Tool
 

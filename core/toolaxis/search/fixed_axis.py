@@ -2,73 +2,52 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
-from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.contact.clearance.gouge import least_distance
-from toolaxis.contact.clearance.queries import keeps_limits
-from toolaxis.contact.placement import tips
-from toolaxis.errors import Cancelled, InvalidInput, UnsupportedGeometry
-from toolaxis.feasibility.feasibility import Feasibility
-from toolaxis.feasibility.surroundings import MARGIN, OTHER, SKIN, CheckSurfaces, Obstacles, group_surroundings
-from toolaxis.feasibility.violations import BACK, CUTTER, Violation
+from toolaxis.cldata.toolpath import ToolPath
+from toolaxis.errors import Cancelled, InvalidInput
+from toolaxis.feasibility.surroundings import Obstacles
+from toolaxis.feasibility.violations import Violation
 from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import MachineLike
 from toolaxis.numeric.vectors import as_rows, unit
-from toolaxis.path.cl_points import trace
-from toolaxis.path.leaving_out import leave_out
-from toolaxis.path.links import LeadArcs, Linking
-from toolaxis.path.mending import FurtherPasses, complete_passes
-from toolaxis.path.pass_layout import Layout, lay_out, pass_length, places_between
-from toolaxis.path.pass_pattern import pattern_name, pattern_names
-from toolaxis.path.planes import PlaneChart
-from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, RestFinder, may_stay
+from toolaxis.path.pass_pattern import pattern_names
 from toolaxis.plan.choices import FEEDS, ISO
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.cost import MachiningCost
+from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.few_in_the_way import find_few_in_the_way, list_axes_to_try
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
 from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
-from toolaxis.search.link_heights import OVER, LinkClearance, height_over
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import (
     REFUSED,
-    at_face,
     better_of,
     intersect_limits,
-    machine_violation,
     make_room,
-    mounting_of,
     snap_to_increments,
 )
 from toolaxis.search.messages import (
     Refusal,
     direction,
-    left_reasons,
     main_first,
-    nothing_to_cut,
     sentence,
-    stays_high,
     tally,
     why_none,
 )
-from toolaxis.search.path_check import PathCheck, ProvenMotions, prove, worst_motion
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
-from toolaxis.search.time_estimate import pace_of
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
-from toolaxis.tolerances import Tolerance, ToleranceLike
+from toolaxis.tolerances import ToleranceLike
 from toolaxis.tools.tool import Tool
 from toolaxis.work import OutOfWork, allow_proof, better_may_exist, is_out_of_work, up_to
 
@@ -99,242 +78,13 @@ METHODS = {"sphere": Method(search), "sectors": Method(sectors),
            "jerk": Method(by_jerk, next_by_jerk, by_cost=False, any_feed=False, describe=describe_jerk),
            "roman": Method(by_roman, None, by_cost=False), "normal": Method(by_mean_normal, None, by_cost=False)}
 
-#: Height above everything at which links cross at least, mm.
-CROSSING = 5.0
 _ATTEMPTS = 4
 #: Shares of the work that is left, where it is limited: for the search, and for the order of what it found.
 _SEARCHED, _ORDERED = 0.5, 0.4
-#: How often motions that the proof refuses are left out of passes before their axis is refused.
-_LEFT_OUT = 3
 #: How often a face for which there is no axis is tried again without few places that are in the way.
 _LEAVINGS = 2
 #: Where further passes make the cut so many times as long, the other feed is tried too.
 _LONGER = 1.02
-#: Places on a face that tell how much stays high between passes over a skin; of how many places of its range they are
-#: taken at most, and how many of these at once.
-_SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
-#: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
-_SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
-#: Where that is too much, passes are laid for this share of the scallop height, and again, down to the second share.
-_CLOSER, _CLOSEST = 0.95, 0.87
-
-
-@dataclass(frozen=True, eq=False)
-class FaceProblem:
-    """One face to be machined, and everything that decides about an axis for it.
-
-    Attributes
-    ----------
-    feasibility : Feasibility
-        With the distances that the search keeps: a little more than required.
-    worth : MachiningCost
-    groups : tuple of CheckSurfaces
-        The same surroundings with the required distances, for the proof.
-    chord : float
-        How far straight motions may leave passes, mm.
-    progress : Progress
-    direction : str
-        "zigzag", "climb" or "conventional".
-    left_out : (n, 3) array
-        Contacts, mm, that passes keep away from besides all on which the cutter may not stand; what stays there is
-        undercut.
-    laid_for : float
-        Share of the scallop height for which passes are laid.
-    lead : float
-        Radius of the arcs on which the tool comes to passes and leaves them, mm; 0 for none.
-    """
-
-    feasibility: Feasibility
-    worth: MachiningCost
-    groups: tuple[CheckSurfaces, ...]
-    chord: float
-    progress: Progress = NO_PROGRESS
-    direction: str = "zigzag"
-    left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
-    laid_for: float = 1.0
-    lead: float = 0.0
-
-    @property
-    def box(self) -> Array:
-        """Corners of the box around everything, (2, 3) mm."""
-        boxes = np.array([group.box for group in self.groups])
-        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
-
-    def top(self, axis: Array) -> float:
-        """Height along an axis of a tip that is above everything, and above what may stand there, mm.
-
-        Parameters
-        ----------
-        axis : (3,) array
-        """
-        low, high = self.box
-        clear = max(CROSSING, height_over(self.worth.scallop) + OVER) + max(group.stock for group in self.groups)
-        return float(np.maximum(low * axis, high * axis).sum()) + clear
-
-    def reach(self, uv: Array, axis: Array) -> NDArray[np.bool_]:
-        """Whether the cutter may stand at parameters of the face, (n,).
-
-        Parameters
-        ----------
-        uv : (n, 2) array
-        axis : (3,) array
-        """
-        free = self.feasibility.reach(uv, axis)
-        if len(self.left_out):
-            away = cKDTree(self.left_out).query(self.worth.face.evaluate(uv).point)[0]
-            free = free & (away > self.aside)
-        return free
-
-    @property
-    def aside(self) -> float:
-        """How far passes keep from what is left out, mm: half the narrowest strip on a plane."""
-        tool = self.worth.tool
-        return float(np.sqrt(2 * self.worth.scallop * (tool.corner_radius or tool.radius)))
-
-    def without(self, ends: Array) -> "FaceProblem":
-        """The same with further contacts left out, from one end of a motion to the other, (m, 2, 3) mm.
-
-        Parameters
-        ----------
-        ends : (m, 2, 3) array
-        """
-        parts = [np.linspace(first, last, int(np.ceil(np.linalg.norm(last - first) / self.aside)) + 1)
-                 for first, last in ends]
-        return replace(self, left_out=np.concatenate([self.left_out, *parts]))
-
-    def laid(self, axis: Array, feed: str) -> Layout:
-        """The passes with an axis, cut out where the tool must not go, before they are traced.
-
-        Parameters
-        ----------
-        axis : (3,) array
-        feed : str
-
-        Raises
-        ------
-        InvalidInput, UnsupportedGeometry
-            When the axis leaves no strip, or passes of this kind do not go with the face.
-        """
-        cut, reach = self.worth.cut(axis), lambda uv: self.reach(uv, axis)
-        cut = replace(cut, scallop=self.laid_for * cut.scallop)
-        found: list[Layout] = []
-        refused: list[InvalidInput | UnsupportedGeometry] = []
-        for pattern in self.worth.patterns:
-            try:
-                placed = lay_out(pattern.chart(cut, feed), cut, reach, self.progress)
-                if isinstance(placed.chart, PlaneChart):
-                    placed.chart.check_pieces(placed.pieces)
-                found.append(placed)
-            except (InvalidInput, UnsupportedGeometry) as reason:
-                refused.append(reason)
-        if not found:
-            raise refused[0]
-        return found[0] if len(found) == 1 else min(found, key=pass_length)
-
-    def traced(self, placed: Layout) -> ToolPath:
-        """Passes with their links.
-
-        Next to walls and where the skin goes on beyond the sub-surface they begin and end without ramps: a ramp goes on
-        along the feed, into what stands there.
-
-        Parameters
-        ----------
-        placed : Layout
-        """
-        axis = placed.cut.axis
-        height = self.top(axis)
-        own = self.worth.face.own_faces
-        walls = any(group.role == OTHER or (group.role == SKIN and any(one not in own for one in group.faces))
-                    for group in self.groups)
-        over = height_over(self.worth.scallop)
-        crossing = LinkClearance(self.worth.tool, self.groups, axis, height, self.worth.allowance, over)
-        lead = LeadArcs(self.lead, self.chord, crossing.free) if self.lead > 0 else None
-        return trace(placed, self.chord, self.direction,
-                     linking=Linking(height, run_in=0.0 if walls else 1.0, approach=over + OVER, lower=crossing.heights,
-                                     beside=crossing.beside, rise=crossing.rise, lead=lead))
-
-    def made(self, axis: Array, feed: str) -> ToolPath:
-        """The very passes, links and ramps included, that `check_candidate` proves.
-
-        Parameters
-        ----------
-        axis : (3,) array
-        feed : str
-        """
-        placed = self.laid(axis, feed)
-        return self.completed(placed, self.traced(placed)).path
-
-    def completed(self, placed: Layout, path: ToolPath) -> FurtherPasses:
-        """Passes with the further ones that it takes to leave little on which the cutter may stand.
-
-        Parameters
-        ----------
-        placed : Layout
-        path : ToolPath
-            Of that layout.
-        """
-        axis = placed.cut.axis
-        return complete_passes(placed, path, self.traced, self._rest_finder(axis, placed).find,
-                               lambda uv: self.reach(uv, axis))
-
-    def left_by(self, path: ToolPath, placed: Layout | None = None) -> tuple[Zone, ...]:
-        """Zones that passes leave higher than the scallop limit, the largest first.
-
-        Parameters
-        ----------
-        path : ToolPath
-            With one fixed axis.
-        placed : Layout, optional
-            Passes of that path: where strips are not exact it is looked between them too.
-        """
-        return self._rest_finder(path.axis[0], placed).find(path)
-
-    def _rest_finder(self, axis: Array, placed: Layout | None) -> RestFinder:
-        """What finds the zones that passes leave; between those of a layout it looks closer where strips are not exact.
-        """
-        worth = self.worth
-        between = None
-        if placed is not None and worth.face.surface.stand_in is not None:
-            between = places_between(placed)
-        return RestFinder(worth.face, worth.tool, worth.scallop, worth.allowance,
-                          lambda uv: ~self.feasibility.reach(uv, axis), self.progress, between)
-
-
-def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = None, obstacles: Obstacles = None, *,
-         objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
-         surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
-         direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
-         greatest_step_over: float = np.inf, lead: float = 0.0, progress: Progress = NO_PROGRESS) -> FaceProblem:
-    """Gather what decides about an axis for a face.
-
-    Parameters
-    ----------
-    face, tool, scallop, obstacles, objective, part, skin, surroundings, tolerance, allowance, direction, passes, feeds
-        As for `best_axis`.
-    greatest_step_over, lead : float
-        As for `best_axis`.
-    limits : AxisLimits, optional
-    progress : Progress
-
-    Raises
-    ------
-    InvalidInput
-        When an argument is out of range.
-    """
-    given = Tolerance.of(tolerance)
-    pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
-    worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes,
-                          greatest_step_over=greatest_step_over)
-    chord = given.chord_for(scallop)
-    kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
-                   shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
-    strict, groups = (group_surroundings(face, replace(limit,
-                                                       gouge=allowance - least_distance(tool, limit.gouge, allowance)),
-                                         allowance, part=part, skin=skin, surroundings=surroundings,
-                                         obstacles=obstacles) for limit in (kept, given))
-    reach = at_face(limits, face, tool)
-    return FaceProblem(Feasibility(face, tool, strict, given, reach, allowance), worth, groups, chord, progress,
-                       direction, lead=lead)
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
@@ -575,28 +325,6 @@ def _sound(job: FaceProblem, one: CountedAxis) -> bool:
     return job.feasibility.witness(one.axis) is None
 
 
-class CheckedCandidate(NamedTuple):
-    """What became of a candidate.
-
-    one : CountedAxis
-    orientation : Orientation
-    proof : PathCheck, refused too where passes leave more on which the cutter may stand than may stay
-    path : ToolPath or None, the very passes that were proven; None where none can be laid
-    longer : float, cutting length over that without further passes
-    """
-
-    one: CountedAxis
-    orientation: Orientation
-    proof: PathCheck
-    path: ToolPath | None
-    longer: float = 1.0
-
-    @property
-    def value(self) -> float:
-        """What is to be least, with the further passes."""
-        return self.one.value * self.longer
-
-
 def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> CheckedCandidate | None:
     """The same axis with the other feed, where that takes less after further passes; None where it does not."""
     one, feed = done.one, 1 - done.one.feed
@@ -605,7 +333,7 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
     other = CountedAxis(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
     if not other.value < done.value:
         return None
-    again = check_candidate(job, other)
+    again = check_candidate(replace(job, laid_for=done.laid_for), other)
     return again if again.proof.witness is None and again.value < done.value else None
 
 
@@ -621,7 +349,7 @@ def _accept_candidate(job: FaceProblem, ledger: AxisTable, one: CountedAxis, ref
             done = check_candidate(job, candidate)
             if done.proof.witness is None:
                 return done
-            witness = done.proof.witness
+            witness, job = done.proof.witness, replace(job, laid_for=done.laid_for)
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)
@@ -629,131 +357,6 @@ def _accept_candidate(job: FaceProblem, ledger: AxisTable, one: CountedAxis, ref
             return None
         candidate = method.next_axis(ledger, candidate, witness, attempt)
     return None
-
-
-def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
-    """Passes made and proven for one candidate.
-
-    Parameters
-    ----------
-    job : FaceProblem
-    one : CountedAxis
-    """
-    feed = FEEDS[one.feed]
-    stuck = _find_blocked_way_up(job, one.axis)
-    if stuck is not None:
-        return CheckedCandidate(one, Orientation(None, feed), PathCheck(stuck), None)
-    try:
-        placed = job.laid(one.axis, feed)
-    except (InvalidInput, UnsupportedGeometry) as reason:  # no strip between the counted places, or no planes here
-        return CheckedCandidate(one, Orientation(None, feed), PathCheck(Violation(BACK, 0.0, words=str(reason))), None)
-    if not len(placed.pieces):
-        why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
-        return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
-    known = ProvenMotions()
-    job, placed, plain, proof = _prove_without_refused(job, placed, known)
-    made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
-    if made.placed is not placed:
-        of_all = _prove_path(job, made.path, known)
-        if of_all.witness is None:
-            proof = of_all
-        else:  # further passes are no reason to refuse an axis
-            made = FurtherPasses(placed, plain, job.left_by(plain, placed))
-    if proof.witness is None and job.laid_for > _CLOSEST and _is_laid_too_wide(job, made):
-        return check_candidate(replace(job, laid_for=_CLOSER * job.laid_for), one)
-    path, area = made.path, job.worth.face.area
-    if proof.witness is None and made.undercut > may_stay(made.zones, area):
-        proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
-    unreached = min((made.left - made.undercut) / area, 1.0)
-    length = path.length(Motion.CUT)
-    width = area * (1 - unreached) / length if length > 0 else 0.0
-    words = left_reasons(made.zones, job.worth.face)
-    found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
-                        "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
-                        ideal=job.worth.ideal_length(one.axis), zones=made.zones)
-    return CheckedCandidate(one, found, proof, path, made.longer)
-
-
-def _find_blocked_way_up(job: FaceProblem, axis: Array) -> Violation | None:
-    """What stands in the way up from every contact, as the opposite side of a duct; None where it is free from some.
-
-    Every path comes down along the axis to its first pass: to lay and prove all of them first would take long.
-    """
-    some = job.feasibility.sparse
-    if not len(some.uv):
-        return None
-    low = tips(some.point, some.normal, axis, job.worth.tool, job.worth.allowance) + CROSSING * axis
-    up = np.maximum(job.top(axis) - low @ axis, 0.0)[:, None] * axis
-    moves = np.stack([low + up / 2, up / 2, np.broadcast_to(axis, low.shape)], axis=1)
-    free = np.ones(len(moves), dtype=bool)
-    stuck = None
-    for group in job.groups:
-        kept = keeps_limits(group.cells, job.worth.tool, moves, np.tile(group.required, (len(group.faces), 1)))
-        blocked = kept.blocked >= 0
-        if stuck is None and blocked.any():
-            stuck = worst_motion(job.worth.tool, group, moves[blocked], group.required, group.required)
-        free &= ~blocked
-    return None if free.any() else stuck
-
-
-def _is_laid_too_wide(job: FaceProblem, made: FurtherPasses) -> bool:
-    """Whether more stays high than may, told from samples: ridges between passes are thinner than any cell.
-
-    Only where strips are measured on what stands for a skin can that be.
-    """
-    worth = job.worth
-    if worth.face.surface.stand_in is None:
-        return False
-    uv = _scatter_places(worth.face, _SAMPLES)
-    for zone in made.zones:
-        uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
-    if not len(uv):
-        return False
-    d = worth.face.evaluate(uv)
-    area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-    high = Excess(worth.face, worth.tool, made.path, worth.allowance + FACTOR * worth.scallop)(uv) > 0
-    return bool(area[high].sum() > OVERLOOKED * area.sum())
-
-
-def _scatter_places(face: Face, count: int) -> Array:
-    """Parameters of a face, (n, 2), of so many places on it, or fewer where it fills next to nothing of its range.
-
-    They lie along no line, as ridges of straight passes do, which would lie between the lines of a grid, or on them.
-    """
-    u0, u1, v0, v1 = face.bounds
-    found: list[Array] = []
-    for first in range(0, _MOST_SCATTERED, _AT_ONCE):
-        share = np.arange(first + 1, first + _AT_ONCE + 1)[:, None] * _SCATTERED % 1.0
-        uv = np.array([u0, v0]) + share * np.array([u1 - u0, v1 - v0])
-        found.append(uv[face.contains(uv)])
-        if sum(map(len, found)) >= count:
-            break
-    return np.concatenate(found)[:count]
-
-
-def _prove_without_refused(job: FaceProblem, placed: Layout,
-                            known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
-    """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
-    path = job.traced(placed)
-    proof = _prove_path(job, path, known)
-    for _ in range(_LEFT_OUT):
-        if not len(proof.blocked):
-            break
-        fewer, ends = leave_out(placed, path, proof.blocked, job.chord)
-        if not len(ends) or not len(fewer.pieces):
-            break
-        job, placed = job.without(ends), fewer
-        path = job.traced(placed)
-        proof = _prove_path(job, path, known)
-    return job, placed, path, proof
-
-
-def _prove_path(job: FaceProblem, path: ToolPath, known: ProvenMotions) -> PathCheck:
-    """The proof of a path, after a look at whether its machine reaches all of it."""
-    beyond = machine_violation(job.feasibility, path, job.groups)
-    if beyond:
-        return PathCheck(beyond)
-    return prove(path, job.worth.tool, job.groups, job.worth.allowance, known=known, progress=job.progress)
 
 
 def _other(job: FaceProblem, one: CountedAxis) -> Orientation:

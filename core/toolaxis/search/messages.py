@@ -44,6 +44,9 @@ LEANS_TOO_LITTLE = "too near to a normal for the least lean"
 #: How sentences end, or begin, that tell what an operation leaves.
 LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
 
+#: What is said of passes over a skin between which too much stays, as closely as they may be laid.
+STAYS_BETWEEN = "more stays higher than the scallop limit between its passes than may, as closely as they may be laid"
+
 #: Points of a border, and how many of them next to a place are looked at for a step at an edge.
 _BORDER, _NEAREST = 400, 20
 
@@ -66,7 +69,8 @@ def left_reasons(zones: Sequence[Zone], face: Face) -> tuple[str, ...]:
     at_walls = sum(zone.area for zone in zones if zone.at_wall)
     words = []
     if at_walls > 0:
-        words.append(f"{100 * min(at_walls / face.area, 1.0):.1f} % of the area lies at walls and {LEFT_OVER}")
+        share = f"{100 * min(at_walls / face.area, 1.0):.1f}"
+        words.append(f"{share} % of the area lies at walls or in corners and {LEFT_OVER}")
     for label in dict.fromkeys(label for zone in zones for label in zone.avoided):
         area = sum(zone.area for zone in zones if label in zone.avoided)
         if label == HELD_SIDE:

@@ -13,7 +13,7 @@ from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.direction_grid import own_frame, ring, spiral
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.local_search import count_row
 
 Array = NDArray[np.float64]

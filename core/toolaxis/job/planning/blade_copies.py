@@ -26,7 +26,7 @@ from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.search.path_check import COMPONENTS, prove
 from toolaxis.shape.face import Face

@@ -18,8 +18,9 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
+from toolaxis.search.candidate_check import check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import FaceProblem, check_candidate, task
+from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.local_search import count_row
 from toolaxis.search.machine_limits import intersect_limits, limit_axes, nearest_held_axis
 from toolaxis.search.messages import sentence

@@ -47,8 +47,8 @@ from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
 from toolaxis.regions.scene import ReachScene
-from toolaxis.search.fixed_axis import FaceProblem
-from toolaxis.search.fixed_axis import task as search_task
+from toolaxis.search.face_problem import FaceProblem
+from toolaxis.search.face_problem import task as search_task
 from toolaxis.search.infeasibility import tight_fillet
 from toolaxis.search.machine_limits import intersect_limits, limit_axes
 from toolaxis.search.shared_axis import together

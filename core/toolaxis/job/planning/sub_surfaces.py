@@ -19,7 +19,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.sub_surface import SubSurface, division_from
 from toolaxis.plan.zone import Zone
 from toolaxis.regions.divide_by_reach import ReachDivision
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters, split_at_kinks
 from toolaxis.shape.part import Part

@@ -171,7 +171,7 @@ def zone_rows(plan: Plan) -> Rows:
             if HELD_SIDE in zone.avoided:
                 beside = f"beside the {HELD_SIDE}"
             why = "the whole sub-surface" if op.left else beside or (
-                "at a wall or an obstacle" if zone.at_wall else "undercut at the border")
+                "at a wall, an obstacle or in a corner" if zone.at_wall else "undercut at the border")
             rows.append([op.name, str(k), f"{zone.area:.2f}", f"{zone.elsewhere:.2f}", why,
                          _vector(box.min(axis=0), 2), _vector(box.max(axis=0), 2)])
     headings = [("operation", False), ("zone", True), ("area mm²", True), ("machined elsewhere mm²", True),

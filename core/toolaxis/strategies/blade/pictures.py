@@ -15,7 +15,7 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, figure
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.strategies.blade.baselines import SmoothSection, by_quaternions, constant_angles
 from toolaxis.strategies.blade.plan import CLEARANCES, BladeSearch
 from toolaxis.strategies.blade.schedule import CLEARANCE, ScheduledLayer, SwivelAxis, schedule_layers

@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.links import Linking
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import mounting_of, while_moving
 from toolaxis.search.messages import sentence

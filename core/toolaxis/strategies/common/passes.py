@@ -25,7 +25,7 @@ from toolaxis.path.parametrization import tip_points
 from toolaxis.path.pass_layout import Layout, lay_out
 from toolaxis.plan.orientation import Orientation
 from toolaxis.progress import NO_PROGRESS, Progress
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import body_clearance, mounting_of, while_moving
 from toolaxis.search.path_check import PathCheck

@@ -21,7 +21,7 @@ from toolaxis.path.greatest_step_over import limit_half_widths
 from toolaxis.path.moving_axis import ConstantLeadField, MovingChart, MovingCut
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, plan_passes

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from toolaxis.cldata.toolpath import ToolPath
     from toolaxis.plan.orientation import Orientation
     from toolaxis.plan.plan import PlanInputs
-    from toolaxis.search.fixed_axis import FaceProblem
+    from toolaxis.search.face_problem import FaceProblem
 
 
 class ConstantLead(Strategy):

@@ -16,7 +16,7 @@ from toolaxis.path.moving_axis import MovingCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.path.pass_count import Count, measure
 from toolaxis.path.width_correction import lean_ratios
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.strategies.four_plus_one.angle_grid import NODES, Nodes
 from toolaxis.strategies.four_plus_one.free_angle import SingularSides, bands, narrowest, smoothest, widest

@@ -24,7 +24,8 @@ from toolaxis.path.moving_axis import MovingCut
 from toolaxis.path.pass_count import Count
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import FaceProblem, find_axis
+from toolaxis.search.face_problem import FaceProblem
+from toolaxis.search.fixed_axis import find_axis
 from toolaxis.search.machine_limits import mounting_of
 from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, MovingAxisResult, plan_passes

@@ -20,7 +20,7 @@ from toolaxis.report.figures.hemisphere import hemisphere_picture
 from toolaxis.report.figures.plots import WidthStudy, study_picture, widths_picture
 from toolaxis.report.figures.splat_renderer import mean_direction
 from toolaxis.search.evaluated_axes import AxisTable
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.sectors import roman_axis, sectors
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from toolaxis.plan.operation import Operation
     from toolaxis.plan.orientation import Orientation
     from toolaxis.plan.plan import Plan, PlanInputs
-    from toolaxis.search.fixed_axis import FaceProblem
+    from toolaxis.search.face_problem import FaceProblem
 
 #: The method that goes by what the linear axes of a machine do.
 JERK = "jerk"

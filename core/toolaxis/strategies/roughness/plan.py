@@ -12,7 +12,7 @@ from toolaxis.path.moving_axis import ConstantLeadField, MovingCut
 from toolaxis.path.pass_layout import Layout
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.strategies.common.passes import CHECKED, plan_passes
 from toolaxis.strategies.roughness.passes import evaluation_length, roughness_at, spots

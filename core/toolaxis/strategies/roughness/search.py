@@ -20,7 +20,7 @@ from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
 from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.pass_layout import Layout, lay_out
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.machine_limits import mounting_of, while_moving
 from toolaxis.strategies.roughness.feasible_area import check_bull_nose
 from toolaxis.strategies.roughness.pass_constraints import (

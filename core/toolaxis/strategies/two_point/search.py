@@ -19,7 +19,7 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.path.links import Linking
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.search.fixed_axis import FaceProblem
+from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.link_heights import OVER, height_over
 from toolaxis.search.machine_limits import while_moving
 from toolaxis.search.messages import sentence
