@@ -38,9 +38,9 @@ _SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
 _SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
 #: How much higher than the limit is told there, as a share of the scallop height.
 _TOLD = 1.0
-#: Where that is too much, passes are laid for the share of the scallop height that brings it down, a little less than
-#: that, but never for less than the last share.
-_CLOSER, _CLOSEST = 0.98, 0.6
+#: Where that is too much, passes are laid for a little less than the share of the scallop height that brings down what
+#: was seen, for less by a step where that did not do, and never for less than the last share.
+_CLOSER, _STEP, _CLOSEST = 0.97, 0.93, 0.6
 
 
 class CheckedCandidate(NamedTuple):
@@ -167,7 +167,10 @@ def _find_closer_share(job: FaceProblem, made: FurtherPasses) -> float | None:
     order = np.argsort(-above, kind="stable")
     may = int(np.searchsorted(np.cumsum(area[order]), OVERLOOKED * area.sum(), side="right"))
     highest = float(above[order[may]]) if may < len(order) else 0.0
-    return None if highest <= 0 else _CLOSER * job.laid_for * limit / (limit + highest)
+    if highest <= 0:
+        return None
+    step = 1.0 if job.laid_for == 1 else _STEP
+    return job.laid_for * min(step, _CLOSER * limit / (limit + highest))
 
 
 def _scatter_places(face: Face, count: int) -> Array:
