@@ -5,7 +5,14 @@ import pytest
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divide_polygon, unite_polygons, without
+from toolaxis.numeric.polygon_boolean import (
+    _crossings,
+    _find_crossings,
+    _find_crossings_plainly,
+    divide_polygon,
+    unite_polygons,
+    without,
+)
 from toolaxis.numeric.polygons import inside, signed_area, slabs
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
@@ -115,3 +122,15 @@ def test_polygons_beside_each_other_become_one():
     assert len(whole) == 3 and area(whole) == pytest.approx(parts)
     assert inside(slabs(whole), np.array([[4.0, 3.0], [3.9, 0.5], [4.1, 0.5], [4.1, 5.0]])).tolist() == [True, True,
                                                                                                      False, True]
+
+
+def test_the_kernel_finds_the_crossings_of_its_plain_twin() -> None:
+    random = np.random.default_rng(5)
+    one, other = (random.random((60, 2)) for _ in range(2))
+    edges = [np.roll(loop, -1, axis=0) - loop for loop in (one, other)]
+    plain = _find_crossings_plainly(one, edges[0], other, edges[1])
+    found = np.empty((len(plain), 4))
+    assert len(plain) > 120 and _find_crossings(one, edges[0], other, edges[1], found) == len(plain)
+    assert np.abs(found - plain).max() < 1e-12
+    few, shares, points = _crossings((one,), (other,))
+    assert np.array_equal(few[:, 0], plain[:, 0]) and len(shares) == len(points) == len(plain)

@@ -111,16 +111,20 @@ def test_kernels_see_what_their_plain_twins_see() -> None:
     surface = made.surface
     assert isinstance(surface, ViewSurface)
     view = surface._view
-    assert (view._table is not None) == _compiled.available
+    assert (view.table is not None) == _compiled.available
     low, high = np.concatenate(surface.outline).min(axis=0), np.concatenate(surface.outline).max(axis=0)
     places = low - 1 + np.random.default_rng(4).random((4000, 2)) * (high - low + 2)
     middle = surface.seen[0].project(np.column_stack([np.full(50, 20.004), np.linspace(10, 19, 50), np.zeros(50)]))
     places = np.concatenate([places, middle])
-    owner, gap = view._find_plainly(places)
-    owner[gap] = view.nearest(places[gap])
-    assert len(gap) >= 50 and set(owner) == {-1, 0, 1}
+    owner = view._find_plainly(places)
+    assert set(owner) == {-1, 0, 1} and not any(one.contains(middle).any() for one in view.seen)
+    assert (owner[-len(middle):] >= 0).all()  # the nearer of both goes on
     assert np.array_equal(view.owners(places), owner)
+    assert np.array_equal(view.nearest(places), view._find_nearest_plainly(places))
     within = owner >= 0
     for mine, plain in zip(view.evaluate(places[within], owner[within]),
                            view._evaluate_plainly(places[within], owner[within]), strict=True):
+        assert np.abs(mine - plain).max() < 1e-9
+    assert (~within).sum() > 300
+    for mine, plain in zip(surface.evaluate(places), surface._evaluate_plainly(places), strict=True):
         assert np.abs(mine - plain).max() < 1e-9

@@ -42,7 +42,8 @@ def contact_frame(face: Face, uv: ArrayLike, feed: Feed = "u") -> Frame:
         When the feed has no direction in a tangent plane.
     """
     rows = as_rows(uv, 2, "uv")
-    d, normal = face.evaluate(rows), face.normal(rows)
+    d = face.evaluate(rows)
+    normal = face.normal(rows, d)
     if isinstance(feed, str):
         if feed not in ("u", "v"):
             raise InvalidInput(f"feed is {feed!r}: it must be 'u', 'v' or a vector")

@@ -43,7 +43,8 @@ def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], re
     reach : float
         Distance to a wall within which a clean-up tool takes over, mm.
     """
-    d, normal = face.evaluate(uv), face.normal(uv)
+    d = face.evaluate(uv)
+    normal = face.normal(uv, d)
     share = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
     share[weighed:] = 0.0
     good = np.linalg.norm(normal, axis=1) > 0.5

@@ -395,7 +395,8 @@ class Feasibility:
         free there, but near places that are left.
         """
         rows, t = as_rows(uv, 2, "uv"), unit(as_rows(axis, 3, "axis")[0])
-        normal, point = self.face.normal(rows), self.face.evaluate(rows).point
+        at = self.face.evaluate(rows)
+        normal, point = self.face.normal(rows, at), at.point
         angle = angle_between(np.broadcast_to(t, normal.shape), normal)
         good = (angle >= self.least_angle) & (angle <= self.greatest_angle)
         inside = self.face.contains(rows)

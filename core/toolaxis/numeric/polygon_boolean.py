@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.jit import jit
 from toolaxis.numeric.polygons import inside, slabs
 
 Array = NDArray[np.float64]
@@ -101,6 +103,38 @@ def _edges(loops: Loops) -> tuple[Array, Array]:
 def _crossings(loops: Loops, by: Loops) -> tuple[Array, Array, Array]:
     """Where borders cross: edge and share of it, (n, 2), on each, edges counted through all loops; and the points."""
     (a, p), (b, q) = _edges(loops), _edges(by)
+    table = np.empty((len(a) + len(b), 4))
+    if _compiled.available:
+        count = _find_crossings(a, p, b, q, table)
+        if count > len(table):
+            table = np.empty((count, 4))
+            _find_crossings(a, p, b, q, table)
+        table = table[:count]
+    else:
+        table = _find_crossings_plainly(a, p, b, q)
+    edge = table[:, 0].astype(np.intp)
+    return table[:, :2], table[:, 2:], a[edge] + table[:, 1:2] * p[edge]
+
+
+@jit
+def _find_crossings(a: Array, p: Array, b: Array, q: Array, out: Array) -> int:
+    """How often edges from a by p cross those from b by q; as many as fit into rows of edge, share, edge, share."""
+    count = 0
+    for i in range(a.shape[0]):
+        for j in range(b.shape[0]):
+            turn = p[i, 0] * q[j, 1] - p[i, 1] * q[j, 0]
+            x, y = b[j, 0] - a[i, 0], b[j, 1] - a[i, 1]
+            s = (x * q[j, 1] - y * q[j, 0]) / turn
+            t = (x * p[i, 1] - y * p[i, 0]) / turn
+            if 0.0 <= s < 1.0 and 0.0 <= t < 1.0:
+                if count < out.shape[0]:
+                    out[count, 0], out[count, 1], out[count, 2], out[count, 3] = i, s, j, t
+                count += 1
+    return count
+
+
+def _find_crossings_plainly(a: Array, p: Array, b: Array, q: Array) -> Array:
+    """The plain twin: all rows, (n, 4)."""
     found = []
     for low in range(0, len(a), _ROWS):
         start, way = a[low:low + _ROWS, None], p[low:low + _ROWS, None]
@@ -111,9 +145,7 @@ def _crossings(loops: Loops, by: Loops) -> tuple[Array, Array, Array]:
             t = (gap[..., 0] * way[..., 1] - gap[..., 1] * way[..., 0]) / turn
         i, j = np.nonzero((s >= 0) & (s < 1) & (t >= 0) & (t < 1))
         found.append(np.column_stack([i + low, s[i, j], j, t[i, j]]))
-    table = np.concatenate(found)
-    edge = table[:, 0].astype(np.intp)
-    return table[:, :2], table[:, 2:], a[edge] + table[:, 1:2] * p[edge]
+    return np.concatenate(found)
 
 
 def _chains(loops: Loops, crossings: Array, points: Array) -> list[_Chain]:

@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.strip.cutter_parameters import CutterParameters
-from toolaxis.contact.strip.second_order import axis_in_frame, compliance, contact_forms, screen_numpy
+from toolaxis.contact.strip.second_order import (
+    axis_in_frame,
+    compliance,
+    contact_forms,
+    screen_many,
+    screen_numpy,
+)
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
@@ -170,8 +176,7 @@ class Estimator:
     def _ratios(self, axes: Array, feed: str, places: Array) -> Array:
         """Exact over second-order widths corrected for the lean, (k, n); 0 where there is none."""
         forms = contact_forms(self.face, places, feed, True)
-        second = np.empty((len(axes), len(forms)))
-        screen_numpy(forms, axes, self._cutter(), self.scallop, second)
+        second = screen_many(forms, axes, self._cutter(), self.scallop)
         second *= lean_ratios(self.leans, axes @ forms[:, :3].T, axes @ forms[:, 3:6].T)
         exact = self._widths(axes, feed, places)
         return np.where(second > 0, exact / np.where(second > 0, 2 * second, 1.0), 0.0)

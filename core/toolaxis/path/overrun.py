@@ -50,7 +50,8 @@ def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: boo
 def _targets(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
     """Points at scallop height over the face, (n, 3)."""
     uv = chart.uv(along, step)
-    return np.asarray(chart.face.evaluate(uv).point + (cut.scallop + cut.allowance) * chart.face.normal(uv))
+    at = chart.face.evaluate(uv)
+    return np.asarray(at.point + (cut.scallop + cut.allowance) * chart.face.normal(uv, at))
 
 
 def _span(chart: Chart, cut: Cut, end: Array, step: Array, whole: float) -> Array:

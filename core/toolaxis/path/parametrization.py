@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placement import tips
 from toolaxis.contact.strip.cutter_parameters import CutterParameters
-from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
+from toolaxis.contact.strip.second_order import contact_forms, screen_many
 from toolaxis.contact.strip.width import step_widths
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.trim_intervals import Intervals, intervals
-from toolaxis.path.width_correction import lean_ratios, lean_table, screening_cutter
+from toolaxis.path.width_correction import lean_ratios_of, lean_table, screening_cutter
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
@@ -272,9 +272,8 @@ class IsoChart:
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""
         forms = contact_forms(self.face, self.uv(along, step), self.feed, True)
-        half = np.empty((1, len(forms)))
-        screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
-        return np.asarray(2 * half[0] * lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis))
+        half = screen_many(forms, cut.axis[None], cut.numbers, cut.scallop)[0]
+        return np.asarray(2 * half * lean_ratios_of(cut.leans, forms, cut.axis))
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
         """How far, in the along parameter, the cutter reaches at scallop height before and behind a contact, (n, 2).

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
+from toolaxis.contact.strip.second_order import axis_in_frame
 from toolaxis.contact.strip.width import step_widths
+from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -119,3 +121,28 @@ def lean_ratios(table: Array, along: Array, across: Array) -> Array:
     x, y = x - i, y - j
     return np.asarray((table[i, j] * (1 - x) + table[i + 1, j] * x) * (1 - y)
                       + (table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x) * y)
+
+
+def lean_ratios_of(table: Array, forms: Array, axis: Array) -> Array:
+    """Ratios from the table at contacts with one axis, (n,).
+
+    Parameters
+    ----------
+    table : (k, m) array
+    forms : (n, 13) array
+        As of `toolaxis.contact.strip.second_order.contact_forms`.
+    axis : (3,) array
+        Unit vector.
+    """
+    if not _compiled.available:
+        return lean_ratios(table, forms[:, :3] @ axis, forms[:, 3:6] @ axis)
+    found = np.empty(len(forms))
+    _fill_ratios(table, forms, axis, found)
+    return found
+
+
+@jit
+def _fill_ratios(table: Array, forms: Array, axis: Array, out: Array) -> None:
+    for i in range(out.shape[0]):
+        lean = axis_in_frame(forms[i], axis)
+        out[i] = lean_ratio(table, lean[0], lean[1])

@@ -10,15 +10,14 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import stations, walk
 from toolaxis.shape.surface import Derivatives
+from toolaxis.skin.band_kernel import PLAIN, TRIED, BandTable
 from toolaxis.skin.faces_in_view import FacesInView
+from toolaxis.skin.point_grid import sort_into_cells
 
 Array = NDArray[np.float64]
 
-#: Points along a loop, as shares of the width of the band, from which the nearest place on it is looked for, and how
-#: many of them are tried.
-_DENSE, _TRIED = 0.25, 3
-#: Share of the band's width within which only tangent planes count.
-_PLAIN = 0.5
+#: Points along a loop, as shares of the width of the band, from which the nearest place on it is looked for.
+_DENSE = 0.25
 
 
 class Heights(NamedTuple):
@@ -88,6 +87,13 @@ class Continuation:
     width: float
     rise: float
 
+    @cached_property
+    def table(self) -> BandTable:
+        """The band for the kernel, `toolaxis.skin.view_kernel.evaluate_view`."""
+        along = np.ascontiguousarray(np.linalg.inv(self.frame)[:, 2])
+        return BandTable(sort_into_cells(self._points, self.width), np.column_stack(self._edges).astype(np.int64),
+                         np.hstack(self._line), np.array(self.frame[2]), along, float(self.width), float(self.rise))
+
     def blend_heights(self, places: Array, spline: Heights) -> Heights:
         """Heights beyond the outline: tangent planes near it, those of a spline from the end of the band on.
 
@@ -146,7 +152,7 @@ class Continuation:
 
     def _feet(self, places: Array) -> _Feet:
         """The nearest places on the outline."""
-        count = min(_TRIED, len(self._points))
+        count = min(TRIED, len(self._points))
         samples = self._tree.query(places, k=count)[1].reshape(len(places), count)
         edges = np.concatenate([self._edges[0][samples], self._edges[1][samples]], axis=1)
         start, end = self._line[0][edges], self._line[1][edges]
@@ -197,11 +203,11 @@ class Continuation:
 
 def _weigh(share: Array) -> tuple[Array, Array, Array]:
     """The weight of tangent planes at shares of the band's width, and its first and second derivatives: C2."""
-    t = np.clip((share - _PLAIN) / (1 - _PLAIN), 0.0, 1.0)
+    t = np.clip((share - PLAIN) / (1 - PLAIN), 0.0, 1.0)
     weight = 1 - t**3 * (10 - 15 * t + 6 * t**2)
     first = -30 * t**2 * (1 - t) ** 2
     second = -60 * t * (1 - t) * (1 - 2 * t)
-    return weight, first / (1 - _PLAIN), second / (1 - _PLAIN) ** 2
+    return weight, first / (1 - PLAIN), second / (1 - PLAIN) ** 2
 
 
 def _outer(a: Array, b: Array) -> Array:

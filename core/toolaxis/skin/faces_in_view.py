@@ -10,13 +10,13 @@ from scipy.spatial import cKDTree
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.covered_parts import Loops, covered_parts
-from toolaxis.skin.place_kernel import turn_into_plane
+from toolaxis.skin.point_grid import sort_into_cells
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.view_kernel import (
     CELLS,
-    GAP,
     ViewTable,
-    find_owned,
+    evaluate_owned,
+    find_nearest_faces,
     find_owners,
     tabulate_polygons,
     tabulate_splines,
@@ -49,18 +49,14 @@ class FacesInView:
         ----------
         places : (n, 2) array
         """
-        if self._table is not None:
-            owner = np.empty(len(places), dtype=np.intp)
-            find_owners(self._table, np.ascontiguousarray(places, dtype=float), owner)
-            gap = np.flatnonzero(owner == GAP)
-        else:
-            owner, gap = self._find_plainly(places)
-        if len(gap):
-            owner[gap] = self.nearest(places[gap])
+        if self.table is None:
+            return self._find_plainly(places)
+        owner = np.empty(len(places), dtype=np.intp)
+        find_owners(self.table, np.ascontiguousarray(places, dtype=float), owner)
         return owner
 
-    def _find_plainly(self, places: Array) -> tuple[Index, Index]:
-        """The plain twin of `toolaxis.skin.view_kernel.find_owners`; which places lie between faces stands apart."""
+    def _find_plainly(self, places: Array) -> Index:
+        """The plain twin of `toolaxis.skin.view_kernel.find_owners`."""
         owner = np.full(len(places), -1, dtype=np.intp)
         low, high = self._boxes
         near = np.asarray(((places >= low[:, None]) & (places <= high[:, None])).all(axis=2))
@@ -70,10 +66,13 @@ class FacesInView:
                 mine = left[self.seen[k].contains(places[left])]
                 owner[mine[~self._is_covered(k, places[mine])]] = k
         gap = np.flatnonzero(owner < 0)
-        return owner, gap[inside(self._around, places[gap])] if len(gap) else gap
+        gap = gap[inside(self._around, places[gap])] if len(gap) else gap
+        if len(gap):
+            owner[gap] = self._find_nearest_plainly(places[gap])
+        return owner
 
     @cached_property
-    def _table(self) -> ViewTable | None:
+    def table(self) -> ViewTable | None:
         """All faces for the kernels; None where one of them has none."""
         if not all(one.has_kernel for one in self.seen):
             return None
@@ -84,7 +83,8 @@ class FacesInView:
                                    [one.begin_in_cells(CELLS) for one in self.seen])
         frame = self.seen[0].frame
         return ViewTable(frame.rows, frame.origin, np.ascontiguousarray(self._boxes.swapaxes(0, 1)),
-                         first.astype(np.int64), tabulate_polygons([*outlines, *hiding, self._around]), splines)
+                         first.astype(np.int64), tabulate_polygons([*outlines, *hiding, self._around]), splines,
+                         sort_into_cells(self._borders), self._beside)
 
     @cached_property
     def covered(self) -> tuple[tuple[Loops, ...], ...]:
@@ -107,10 +107,9 @@ class FacesInView:
         owner : (n,) array of int
             The face at each place.
         """
-        if self._table is not None:
+        if self.table is not None:
             table = np.empty((len(places), 6, 3))
-            find_owned(self._table, np.ascontiguousarray(places, dtype=float), np.ascontiguousarray(owner), table)
-            turn_into_plane(self._table.rows, table)
+            evaluate_owned(self.table, np.ascontiguousarray(places, dtype=float), np.ascontiguousarray(owner), table)
             return Derivatives(*(table[:, k] for k in range(6)))
         return self._evaluate_plainly(places, owner)
 
@@ -130,7 +129,15 @@ class FacesInView:
         ----------
         places : (n, 2) array
         """
-        return np.asarray(self._which[self._borders.query(places)[1]], dtype=np.intp)
+        if self.table is None:
+            return self._find_nearest_plainly(places)
+        owner = np.empty(len(places), dtype=np.intp)
+        find_nearest_faces(self.table, np.ascontiguousarray(places, dtype=float), owner)
+        return owner
+
+    def _find_nearest_plainly(self, places: Array) -> Index:
+        """The plain twin of `toolaxis.skin.view_kernel.find_nearest_faces`."""
+        return np.asarray(self._beside[self._border_tree.query(places)[1]], dtype=np.intp)
 
     @cached_property
     def _boxes(self) -> Array:
@@ -142,10 +149,15 @@ class FacesInView:
         return slabs(self.outline)
 
     @cached_property
-    def _borders(self) -> cKDTree:
-        return cKDTree(np.concatenate([loop for one in self.seen for loop in one.outline]))
+    def _borders(self) -> Array:
+        """Points along the borders of the faces, (n, 2)."""
+        return np.concatenate([loop for one in self.seen for loop in one.outline])
 
     @cached_property
-    def _which(self) -> Index:
-        """The face of each point of the borders."""
-        return np.repeat(np.arange(len(self.seen)), [sum(map(len, one.outline)) for one in self.seen])
+    def _border_tree(self) -> cKDTree:
+        return cKDTree(self._borders)
+
+    @cached_property
+    def _beside(self) -> NDArray[np.int64]:
+        """The face of each of those points."""
+        return np.repeat(np.arange(len(self.seen)), [sum(map(len, one.outline)) for one in self.seen]).astype(np.int64)

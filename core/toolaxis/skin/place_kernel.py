@@ -92,37 +92,51 @@ def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, 
 
 
 @jit
-def turn_into_plane(rows: Array, table: Array) -> None:
-    """Vectors S, Su, Sv, Suu, Suv, Svv turned into derivatives with the place in the plane, in place.
+def turn_place_into_plane(rows: Array, d: Array, memory: Array) -> None:
+    """Vectors S, Su, Sv, Suu, Suv, Svv of one place turned into derivatives with the place in the plane, in place.
 
     Places in the plane move evenly: what the second derivatives would move aside, u and v take back.
 
     Parameters
     ----------
     rows : (2, 3) array
+    d : (6, 3) array
+    memory : (7, 3) array
+        What is in it does not count.
+    """
+    rate, first, bend = memory[0:2], memory[2:4], memory[4:7]
+    ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
+    det = ax * by - ay * bx
+    if not abs(det) > 0.0:
+        det = np.finfo(np.float64).tiny
+    # rates of u and v with x, and with y
+    rate[0, 0], rate[0, 1], rate[1, 0], rate[1, 1] = by / det, -ay / det, -bx / det, ax / det
+    for k in range(2):
+        for c in range(3):
+            first[k, c] = d[1, c] * rate[k, 0] + d[2, c] * rate[k, 1]
+    for n in range(3):
+        p, q = (0 if n < 2 else 1), (0 if n < 1 else 1)
+        for c in range(3):
+            bend[n, c] = (d[3, c] * rate[p, 0] * rate[q, 0] + d[5, c] * rate[p, 1] * rate[q, 1]
+                          + d[4, c] * (rate[p, 0] * rate[q, 1] + rate[p, 1] * rate[q, 0]))
+    for n in range(3):
+        x, y = _part(rows, 0, bend[n]), _part(rows, 1, bend[n])
+        for c in range(3):
+            d[3 + n, c] = bend[n, c] - first[0, c] * x - first[1, c] * y
+    for k in range(2):
+        for c in range(3):
+            d[1 + k, c] = first[k, c]
+
+
+@jit
+def turn_into_plane(rows: Array, table: Array) -> None:
+    """The same for many places.
+
+    Parameters
+    ----------
+    rows : (2, 3) array
     table : (n, 6, 3) array
     """
-    rate, first, bend = np.empty((2, 2)), np.empty((2, 3)), np.empty((3, 3))
+    memory = np.empty((7, 3))
     for i in range(table.shape[0]):
-        d = table[i]
-        ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
-        det = ax * by - ay * bx
-        if not abs(det) > 0.0:
-            det = np.finfo(np.float64).tiny
-        # rates of u and v with x, and with y
-        rate[0, 0], rate[0, 1], rate[1, 0], rate[1, 1] = by / det, -ay / det, -bx / det, ax / det
-        for k in range(2):
-            for c in range(3):
-                first[k, c] = d[1, c] * rate[k, 0] + d[2, c] * rate[k, 1]
-        for n in range(3):
-            p, q = (0 if n < 2 else 1), (0 if n < 1 else 1)
-            for c in range(3):
-                bend[n, c] = (d[3, c] * rate[p, 0] * rate[q, 0] + d[5, c] * rate[p, 1] * rate[q, 1]
-                              + d[4, c] * (rate[p, 0] * rate[q, 1] + rate[p, 1] * rate[q, 0]))
-        for n in range(3):
-            x, y = _part(rows, 0, bend[n]), _part(rows, 1, bend[n])
-            for c in range(3):
-                d[3 + n, c] = bend[n, c] - first[0, c] * x - first[1, c] * y
-        for k in range(2):
-            for c in range(3):
-                d[1 + k, c] = first[k, c]
+        turn_place_into_plane(rows, table[i], memory)

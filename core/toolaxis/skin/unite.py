@@ -74,7 +74,7 @@ def unite(faces: Sequence[Face], gap: float = GAP) -> Face:
     origin = (box.min(axis=0) + box.max(axis=0)) / 2
     seen = [SeenFace(face, frame[:2], origin) for face in faces]
     outline = outline_around(seen, gap)
-    surface = view_surface(faces, frame, origin, outline)
+    surface = view_surface(seen, frame, origin, outline)
     members = tuple(Member(face) for face in faces)
     kinds = {face.kind for face in faces}
     made = Face(surface, outline, False, faces[0].number, name_of(faces), kinds.pop() if len(kinds) == 1 else "bspline",

@@ -6,18 +6,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
 from toolaxis.numeric.jit import jit
 from toolaxis.numeric.polygons import EdgeIndex, lies_inside
 from toolaxis.shape.nurbs import NurbsSurface
-from toolaxis.skin.place_kernel import PlaceFrame, find_place
+from toolaxis.skin.band_kernel import TRIED, BandTable, add_height, blend_into_spline, find_foot, height_of
+from toolaxis.skin.place_kernel import PlaceFrame, find_place, turn_place_into_plane
+from toolaxis.skin.point_grid import PointGrid, find_nearest
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 #: Cells each way over the box around a face, each with the parameters from which its places are looked for.
 CELLS = 48
-#: What is told of a place that lies in the outline around all faces, but in none of them.
-GAP = -2
 
 
 class PolygonTable(NamedTuple):
@@ -61,6 +62,7 @@ class ViewTable(NamedTuple):
     covered : (k + 1,) array of int, where the polygons begin under which each face is covered; the last: how many
     polygons : PolygonTable, the outlines of the faces, what covers them, and the outline around all
     splines : SplineTable
+    borders : PointGrid, points along the borders of the faces;  beside : (n,) array of int, the face of each
     """
 
     rows: Array
@@ -69,6 +71,24 @@ class ViewTable(NamedTuple):
     covered: Index
     polygons: PolygonTable
     splines: SplineTable
+    borders: PointGrid
+    beside: Index
+
+
+class Memory(NamedTuple):
+    """Memory for one place after the other: what is in it does not count.
+
+    uv : (2,);  basis : (6, 26);  turn : (7, 3) arrays;  nearest, square : (`TRIED`,) arrays, the first of int
+    one, away : (1,) arrays, the first of int
+    """
+
+    uv: Array
+    basis: Array
+    turn: Array
+    nearest: Index
+    square: Array
+    one: Index
+    away: Array
 
 
 def tabulate_polygons(polygons: Sequence[EdgeIndex]) -> PolygonTable:
@@ -118,8 +138,60 @@ def _lies_in(polygons: PolygonTable, k: int, x: float, y: float) -> bool:
 
 
 @jit
+def _new_memory() -> Memory:
+    return Memory(np.empty(2), np.empty((6, 26)), np.empty((7, 3)), np.empty(TRIED, dtype=np.int64), np.empty(TRIED),
+                  np.empty(1, dtype=np.int64), np.empty(1))
+
+
+@jit
+def _nearest_face(table: ViewTable, x: float, y: float, memory: Memory) -> int:
+    """The face whose border is nearest to a place."""
+    find_nearest(table.borders, x, y, np.inf, memory.one, memory.away)
+    return int(table.beside[memory.one[0]])
+
+
+@jit
+def _owner_at(table: ViewTable, x: float, y: float, memory: Memory) -> int:
+    """Which face lies at a place; -1 beyond the outline around all."""
+    boxes, covered, polygons = table.boxes, table.covered, table.polygons
+    for k in range(boxes.shape[0]):
+        if not (boxes[k, 0, 0] <= x <= boxes[k, 1, 0] and boxes[k, 0, 1] <= y <= boxes[k, 1, 1]):
+            continue
+        if not _lies_in(polygons, k, x, y):
+            continue
+        seen = True
+        for c in range(covered[k], covered[k + 1]):
+            if _lies_in(polygons, c, x, y):
+                seen = False
+                break
+        if seen:
+            return k
+    if _lies_in(polygons, polygons.first.shape[0] - 2, x, y):  # between faces that do not quite meet
+        return _nearest_face(table, x, y, memory)
+    return -1
+
+
+@jit
+def _evaluate_face(table: ViewTable, k: int, place: Array, out: Array, memory: Memory) -> None:
+    """The six vectors (6, 3) of a face at a place, with the place."""
+    knots, control, first, size, ends, begin = table.splines
+    cells = begin.shape[1]
+    low, high = table.boxes[k, 0], table.boxes[k, 1]
+    a = min(max(int((place[0] - low[0]) / max(high[0] - low[0], 1e-300) * cells), 0), cells - 1)
+    b = min(max(int((place[1] - low[1]) / max(high[1] - low[1], 1e-300) * cells), 0), cells - 1)
+    uv = memory.uv
+    uv[0], uv[1] = begin[k, a, b, 0], begin[k, a, b, 1]
+    nu, nv, pu, pv = size[k, 0], size[k, 1], size[k, 2], size[k, 3]
+    behind_u, behind_v = first[k, 0] + nu + pu + 1, first[k, 1] + nv + pv + 1
+    net = control[first[k, 2]:first[k, 2] + nu * nv].reshape((nu, nv, 4))
+    data = (knots[first[k, 0]:behind_u], knots[first[k, 1]:behind_v], net, pu, pv, size[k, 4] == 1)
+    find_place(data, PlaceFrame(table.rows, table.origin, ends[k]), place, uv, out, memory.basis)
+    turn_place_into_plane(table.rows, out, memory.turn)
+
+
+@jit
 def find_owners(table: ViewTable, places: Array, owner: NDArray[np.intp]) -> None:
-    """Which face lies at places: its number, -1 beyond the outline around all, `GAP` between them.
+    """Which face lies at places: its number, -1 beyond the outline around all.
 
     Parameters
     ----------
@@ -128,31 +200,30 @@ def find_owners(table: ViewTable, places: Array, owner: NDArray[np.intp]) -> Non
     owner : (n,) array of int
         Receives the numbers.
     """
-    boxes, covered, polygons = table.boxes, table.covered, table.polygons
-    count, last = boxes.shape[0], polygons.first.shape[0] - 2
+    memory = _new_memory()
     for i in range(places.shape[0]):
-        x, y = places[i, 0], places[i, 1]
-        owner[i] = -1
-        for k in range(count):
-            if not (boxes[k, 0, 0] <= x <= boxes[k, 1, 0] and boxes[k, 0, 1] <= y <= boxes[k, 1, 1]):
-                continue
-            if not _lies_in(polygons, k, x, y):
-                continue
-            seen = True
-            for c in range(covered[k], covered[k + 1]):
-                if _lies_in(polygons, c, x, y):
-                    seen = False
-                    break
-            if seen:
-                owner[i] = k
-                break
-        if owner[i] < 0 and _lies_in(polygons, last, x, y):
-            owner[i] = GAP
+        owner[i] = _owner_at(table, places[i, 0], places[i, 1], memory)
 
 
 @jit
-def find_owned(table: ViewTable, places: Array, owner: NDArray[np.intp], out: Array) -> None:
-    """The six vectors S, Su, Sv, Suu, Suv, Svv of faces at places, with their own parameters.
+def find_nearest_faces(table: ViewTable, places: Array, owner: NDArray[np.intp]) -> None:
+    """The face whose border is nearest to each place.
+
+    Parameters
+    ----------
+    table : ViewTable
+    places : (n, 2) array
+    owner : (n,) array of int
+        Receives the numbers.
+    """
+    memory = _new_memory()
+    for i in range(places.shape[0]):
+        owner[i] = _nearest_face(table, places[i, 0], places[i, 1], memory)
+
+
+@jit
+def evaluate_owned(table: ViewTable, places: Array, owner: NDArray[np.intp], out: Array) -> None:
+    """The six vectors S, Sx, Sy, Sxx, Sxy, Syy of faces at places x, y of the plane.
 
     Parameters
     ----------
@@ -163,17 +234,36 @@ def find_owned(table: ViewTable, places: Array, owner: NDArray[np.intp], out: Ar
     out : (n, 6, 3) array
         Receives the vectors.
     """
-    knots, control, first, size, ends, begin = table.splines
-    work, uv = np.empty((6, 26)), np.empty(2)
-    cells = begin.shape[1]
+    memory = _new_memory()
     for i in range(places.shape[0]):
-        k = owner[i]
-        low, high = table.boxes[k, 0], table.boxes[k, 1]
-        a = min(max(int((places[i, 0] - low[0]) / max(high[0] - low[0], 1e-300) * cells), 0), cells - 1)
-        b = min(max(int((places[i, 1] - low[1]) / max(high[1] - low[1], 1e-300) * cells), 0), cells - 1)
-        uv[0], uv[1] = begin[k, a, b, 0], begin[k, a, b, 1]
-        nu, nv, pu, pv = size[k, 0], size[k, 1], size[k, 2], size[k, 3]
-        behind_u, behind_v = first[k, 0] + nu + pu + 1, first[k, 1] + nv + pv + 1
-        net = control[first[k, 2]:first[k, 2] + nu * nv].reshape((nu, nv, 4))
-        data = (knots[first[k, 0]:behind_u], knots[first[k, 1]:behind_v], net, pu, pv, size[k, 4] == 1)
-        find_place(data, PlaceFrame(table.rows, table.origin, ends[k]), places[i], uv, out[i], work)
+        _evaluate_face(table, owner[i], places[i], out[i], memory)
+
+
+@jit
+def evaluate_view(table: ViewTable, band: BandTable, spline: SurfaceData, places: Array, out: Array) -> None:
+    """The six vectors at places in the outline, and beyond it, where faces go on and then a spline does.
+
+    Parameters
+    ----------
+    table : ViewTable
+    band : BandTable
+    spline : SurfaceData
+        Its parameters are places of the plane.
+    places : (n, 2) array
+    out : (n, 6, 3) array
+        Receives the vectors.
+    """
+    memory, foot_place, at_foot = _new_memory(), np.empty(2), np.empty((6, 3))
+    for i in range(places.shape[0]):
+        x, y = places[i, 0], places[i, 1]
+        owner = _owner_at(table, x, y, memory)
+        if owner >= 0:
+            _evaluate_face(table, owner, places[i], out[i], memory)
+            continue
+        surface_derivatives(spline, x, y, out[i], memory.basis)
+        foot = find_foot(band, x, y, memory.nearest, memory.square)
+        if foot.near:
+            foot_place[0], foot_place[1] = foot.x, foot.y
+            _evaluate_face(table, _nearest_face(table, foot.x, foot.y, memory), foot_place, at_foot, memory)
+            face, here = height_of(band, table.origin, at_foot), height_of(band, table.origin, out[i])
+            add_height(band, blend_into_spline(band, foot, face, here, x, y), out[i])

@@ -11,6 +11,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
 from toolaxis.numeric.polygons import stations, walk
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
@@ -20,6 +21,7 @@ from toolaxis.skin.covered_parts import Loops, places_in, polygon_area
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.tangent_planes import TangentPlanes, heights_beyond
+from toolaxis.skin.view_kernel import evaluate_view
 
 Array = NDArray[np.float64]
 
@@ -125,15 +127,21 @@ class ViewSurface(NurbsSurface):
     @cached_property
     def stand_in(self) -> NurbsSurface:  # type: ignore[override]
         """The smooth spline that stands for the faces where strips are measured."""
-        return NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
+        spline = NurbsSurface(self.knots_u, self.knots_v, self.control, self.degree)
+        spline.__dict__["turning_cells"] = self._no_turning_cells  # it is a height over the plane
+        return spline
+
+    @property
+    def _no_turning_cells(self) -> TurningCells:
+        lines_u, lines_v = (np.array(ends) for ends in self.domain)
+        return TurningCells(lines_u, lines_v, np.zeros((1, 1), dtype=bool))
 
     @cached_property
     def turning_cells(self) -> TurningCells:  # type: ignore[override]
         """Where Su x Sv may turn over: a height over the plane does not, unless one of the faces does."""
         if any(face.surface.turning_cells.turning.any() for face in self.members):
             return find_turning_cells(self.data)
-        lines_u, lines_v = (np.array(ends) for ends in self.domain)
-        return TurningCells(lines_u, lines_v, np.zeros((1, 1), dtype=bool))
+        return self._no_turning_cells
 
     @cached_property
     def joins(self) -> tuple[Array, ...]:
@@ -157,7 +165,16 @@ class ViewSurface(NurbsSurface):
         uv : (n, 2) array
             Places x, y in the plane, beyond the outline too.
         """
-        places = np.asarray(uv, dtype=float).reshape(-1, 2)
+        places = np.ascontiguousarray(uv, dtype=float).reshape(-1, 2)
+        if self._view.table is None:
+            return self._evaluate_plainly(places)
+        breathe()
+        out = np.empty((len(places), 6, 3))
+        evaluate_view(self._view.table, self._continuation.table, self.data, places, out)
+        return Derivatives(*(out[:, k] for k in range(6)))
+
+    def _evaluate_plainly(self, places: Array) -> Derivatives:
+        """The plain twin of `toolaxis.skin.view_kernel.evaluate_view`."""
         owner = self._view.owners(places)
         within = owner >= 0
         if within.all():
@@ -200,16 +217,17 @@ class ViewSurface(NurbsSurface):
                            m[:3, :3] @ self.origin + m[:3, 3], self.outline)
 
 
-def view_surface(members: Sequence[Face], frame: Array, origin: Array, outline: tuple[Array, ...]) -> ViewSurface:
+def view_surface(seen: Sequence[SeenFace], frame: Array, origin: Array, outline: tuple[Array, ...]) -> ViewSurface:
     """Faces as one surface, with a spline through as many of its points as it takes.
 
     Parameters
     ----------
-    members, frame, origin, outline
+    seen : sequence of SeenFace
+        The members, with the first two rows of the frame and its origin.
+    frame, origin, outline
         As the attributes of `ViewSurface`.
     """
-    seen = tuple(SeenFace(face, frame[:2], origin) for face in members)
-    view = FacesInView(seen, outline)
+    view = FacesInView(tuple(seen), outline)
     low, high = np.concatenate(outline).min(axis=0), np.concatenate(outline).max(axis=0)
     size, count = high - low, _COARSE
     while True:
@@ -221,8 +239,10 @@ def view_surface(members: Sequence[Face], frame: Array, origin: Array, outline: 
         if count >= _FINE or _worst(spline, view, frame, origin, lines) <= _EXACT:
             break
         count = 2 * count - 1
-    return ViewSurface(spline.knots_u, spline.knots_v, spline.control, spline.degree, tuple(members), frame, origin,
-                       outline)
+    made = ViewSurface(spline.knots_u, spline.knots_v, spline.control, spline.degree,
+                       tuple(one.face for one in seen), frame, origin, outline)
+    made.__dict__.update(seen=view.seen, _view=view)  # their tables are not made twice
+    return made
 
 
 def _heights(view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> Array:

@@ -6,16 +6,17 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.frame import Feed, contact_frame
+from toolaxis.contact.frame import Feed, frame_from_normal
 from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters, cutter_parameters
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit, jit_inline
-from toolaxis.numeric.triples import Triple, dot
+from toolaxis.numeric.triples import Triple, cross, dot, plus
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.numeric.vectors import dot as dots
-from toolaxis.shape.differential import curvature_form
+from toolaxis.shape.differential import DEGENERATE, curvature_form
 from toolaxis.shape.face import Face
+from toolaxis.shape.surface import Derivatives
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -24,6 +25,8 @@ Form: TypeAlias = tuple[float, float, float]
 
 SHARPEST = 1e-9
 """Corner radius, as a share of R, that stands in for a sharp corner in curvatures."""
+#: Share of a feed's length below which what of it lies in the tangent plane is no direction.
+_LOST = 1e-9
 #: Contacts with an axis each that are screened at once, every axis at every one of them.
 _TOGETHER = 64
 
@@ -39,9 +42,24 @@ def surface_form(d: Array, feed: Triple, left: Triple, normal: Triple) -> Form:
     feed, left, normal : Triple
     """
     su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
-    a, b, p, q = dot(su, feed), dot(sv, feed), dot(su, left), dot(sv, left)
     l, m = dot((d[3, 0], d[3, 1], d[3, 2]), normal), dot((d[4, 0], d[4, 1], d[4, 2]), normal)
     n = dot((d[5, 0], d[5, 1], d[5, 2]), normal)
+    return _turn_form((l, m, n), (dot(su, feed), dot(sv, feed), dot(su, left), dot(sv, left)))
+
+
+@jit_inline
+def _turn_form(second: Form, tangent: tuple[float, float, float, float]) -> Form:
+    """A second fundamental form in the frame of feed and left; zeros where Su and Sv span no plane.
+
+    Parameters
+    ----------
+    second : (L, M, N)
+        Of the parameters, mm.
+    tangent : tuple of float
+        Components of Su and of Sv along the feed, then along left, mm.
+    """
+    l, m, n = second
+    a, b, p, q = tangent
     det = a * q - b * p
     if det == 0.0:
         return 0.0, 0.0, 0.0
@@ -217,12 +235,74 @@ def contact_forms(face: Face, uv: ArrayLike, feed: Feed, steps: bool) -> Array:
     rows = as_rows(uv, 2, "uv")
     if steps and not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
-    d, frame = face.evaluate(rows), contact_frame(face, rows, feed)
+    d = face.evaluate(rows)
+    compiled = _compiled.available and isinstance(feed, str) and feed in ("u", "v")
+    if not compiled or len(face.surface.turning_cells.rows_in(rows)):
+        return _forms_plainly(face, rows, d, feed, steps)
+    forms, plain = np.empty((len(rows), 13)), np.empty(len(rows), dtype=bool)
+    _fill_forms(d, -1.0 if face.flip else 1.0, feed == "u", steps, forms, plain)
+    if plain.any():
+        some = Derivatives(*(every[plain] for every in d))
+        forms[plain] = _forms_plainly(face, rows[plain], some, feed, steps)
+    return forms
+
+
+def _forms_plainly(face: Face, rows: Array, d: Derivatives, feed: Feed, steps: bool) -> Array:
+    """The plain twin of the kernel, for degenerate places and folds too."""
+    along: ArrayLike = feed
+    if isinstance(feed, str):
+        if feed not in ("u", "v"):
+            raise InvalidInput(f"feed is {feed!r}: it must be 'u', 'v' or a vector")
+        along = d.su if feed == "u" else d.sv
+    frame = frame_from_normal(face.normal(rows, d), along)
     form = curvature_form(d, frame.normal, frame.feed)
     pace = np.ones(len(rows))
     if steps:
         pace = np.abs(dots(d.sv if feed == "u" else d.su, frame.left))
     return np.column_stack([*frame, form[:, 0, 0], form[:, 0, 1], form[:, 1, 1], pace])
+
+
+@jit
+def _fill_forms(at: Derivatives, sense: float, along_u: bool, steps: bool, out: Array,
+                plain: NDArray[np.bool_]) -> None:
+    """Rows of `contact_forms` along a parameter, but where Su and Sv nearly span no plane: these are marked.
+
+    Parameters
+    ----------
+    at : Derivatives
+    sense : float
+        1 where the normal out of the material is Su x Sv, -1 where it is the opposite.
+    along_u, steps : bool
+    out : (n, 13) array
+        Receives the rows.
+    plain : (n,) array of bool
+        Receives which of them are left to the plain twin.
+    """
+    for i in range(out.shape[0]):
+        su, sv = (at.su[i, 0], at.su[i, 1], at.su[i, 2]), (at.sv[i, 0], at.sv[i, 1], at.sv[i, 2])
+        normal = cross(su, sv)
+        size, largest = sqrt(dot(normal, normal)), max(dot(su, su), dot(sv, sv))
+        plain[i] = not size > 2.0 * DEGENERATE * largest
+        if plain[i]:
+            continue
+        normal = (sense * normal[0] / size, sense * normal[1] / size, sense * normal[2] / size)
+        way, aside = (su, sv) if along_u else (sv, su)
+        feed = plus(way, normal, -dot(way, normal))
+        size = sqrt(dot(feed, feed))
+        plain[i] = not size > 2.0 * _LOST * sqrt(dot(way, way))
+        if plain[i]:
+            continue
+        feed = (feed[0] / size, feed[1] / size, feed[2] / size)
+        left = cross(normal, feed)
+        a, b, p, q = dot(su, feed), dot(sv, feed), dot(su, left), dot(sv, left)
+        l = dot((at.suu[i, 0], at.suu[i, 1], at.suu[i, 2]), normal)
+        m = dot((at.suv[i, 0], at.suv[i, 1], at.suv[i, 2]), normal)
+        n = dot((at.svv[i, 0], at.svv[i, 1], at.svv[i, 2]), normal)
+        ff, fk, kk = _turn_form((l, m, n), (a, b, p, q))
+        for c in range(3):
+            out[i, c], out[i, 3 + c], out[i, 6 + c] = feed[c], left[c], normal[c]
+        out[i, 9], out[i, 10], out[i, 11] = ff, fk, kk
+        out[i, 12] = abs(dot(aside, left)) if steps else 1.0
 
 
 def second_order_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike, scallop: float, feed: Feed = "u",
