@@ -7,6 +7,30 @@ from FreeCAD import Vector
 
 BLADE_TOOL = {"tool": "torus:6x1", "stickout": 40.0, "holder": ((8.0, 0.0), (8.0, 30.0)), "scallop": 0.3}
 
+#: Two ball ends with holders, of which the larger one does not reach the valley of `wave`.
+RACK = """
+[holders.SLIM]
+holder = [[8.0, 0.0], [8.0, 30.0]]
+
+[[tool]]
+number = 1
+title = "Ball D20, 60 out"
+kind = "ball"
+diameter = 20.0
+stickout = 60.0
+holder = "SLIM"
+feedrate = 1500.0
+spindle = 6000.0
+
+[[tool]]
+number = 7
+title = "Ball D6, 40 out"
+kind = "ball"
+diameter = 6.0
+stickout = 40.0
+holder = "SLIM"
+"""
+
 
 def interpolated(rows):
     surface = FreecadPart.BSplineSurface()

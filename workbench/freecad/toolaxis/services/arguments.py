@@ -1,5 +1,6 @@
 """What scripts hand to the public functions, checked and brought into one form before anything else happens."""
 
+from difflib import get_close_matches
 from math import isfinite
 from pathlib import Path
 
@@ -207,7 +208,8 @@ def fields_of(document, given):
     found = {}
     for name, value in given.items():
         if name not in _NAMES:
-            raise _refusal(f"{name!r} is no argument of plan: use {', '.join(sorted(_NAMES))}")
+            meant = get_close_matches(name, _NAMES) or sorted(_NAMES)
+            raise _refusal(f"{name!r} is no argument of plan: use {', '.join(meant)}")
         if value is None and name not in _LISTS:
             continue
         if name in _NUMBERS:
