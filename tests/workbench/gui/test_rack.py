@@ -18,13 +18,14 @@ def whole_parts():
 
 
 @pytest.fixture
-def wave(desk, whole_parts):
-    """A block whose top has a valley that only the smaller tool of `whole_parts.RACK` reaches."""
+def grooved(desk, whole_parts):
+    """A block whose top has a groove that only the smaller tool of `whole_parts.RACK` reaches, and the name of the top.
+    """
     import FreeCAD
 
-    document = FreeCAD.newDocument("Wave")
+    document = FreeCAD.newDocument("Grooved")
     document.UndoMode = 1
-    thing, name = whole_parts.wave(document)
+    thing, name = whole_parts.grooved(document)
     view = desk.gui.getDocument(document.Name).ActiveView
     view.viewIsometric()
     view.fitAll()
@@ -39,13 +40,13 @@ def rack_file(whole_parts, tmp_path):
 
 
 @pytest.fixture
-def form(desk, wave, rack_file, monkeypatch):
-    """The panel with the rack, for the waved face."""
-    form = desk.start(*wave)
+def form(desk, grooved, rack_file, monkeypatch):
+    """The panel with the rack, for the grooved face."""
+    form = desk.start(*grooved)
     monkeypatch.setattr(desk.widgets.QFileDialog, "getOpenFileName", lambda *_: (str(rack_file), ""))
     form.rack.setCurrentIndex(form.rack.findText("library file..."))
     desk.pump(0.1)
-    desk.type(form.scallop, "0.3 mm")
+    desk.type(form.scallop, "0.1 mm")
     return form
 
 
@@ -55,7 +56,7 @@ def plan_in(document):
     return next(filter(is_plan, document.Objects), None)
 
 
-def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, wave):
+def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
     form = desk.start()
     assert not form.faces.count() and not form.compute.isEnabled()
     form.rack.setCurrentIndex(form.rack.findText("general rack"))
@@ -93,8 +94,8 @@ def test_a_dialog_that_is_cancelled_and_a_rack_that_is_none(desk, form, monkeypa
 def test_fields_of_the_advanced_tab_are_asked_for(desk, form):
     form.tabs.setCurrentWidget(form.advancedTab)
     desk.type(form.stock, "0.3 mm")
-    desk.type(form.greatestStepOver, "0.1 mm")
-    assert "greatest step-over is 0.1 mm" in form.message.text() and not form.compute.isEnabled()
+    desk.type(form.greatestStepOver, "0.05 mm")
+    assert "greatest step-over is 0.05 mm" in form.message.text() and not form.compute.isEnabled()
     desk.type(form.greatestStepOver, "4")
     desk.type(form.leastLean, "95")
     assert "least lean" in form.message.text()
@@ -110,13 +111,13 @@ def test_fields_of_the_advanced_tab_are_asked_for(desk, form):
     desk.shot("91-advanced")
 
 
-def test_from_the_rack_to_a_program_and_back(desk, wave, form, remembered, tmp_path):
+def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tmp_path):
     import FreeCAD
     from freecad.toolaxis.document.kinds import operations_in
     from freecad.toolaxis.document.tool_colours import tool_colour
     from freecad.toolaxis.gui.commands.export import Export
 
-    document = wave[0].Document
+    document = grooved[0].Document
     before = sorted(thing.Name for thing in document.Objects)
     desk.computed(form)
     assert " machined" in form.message.text() and "with 2 of 2 tools" in form.message.text()
@@ -144,9 +145,9 @@ def test_from_the_rack_to_a_program_and_back(desk, wave, form, remembered, tmp_p
     desk.pump(0.2)
     assert sorted(thing.Name for thing in document.Objects) == before, "one undo step takes all back"
     document.redo()
-    document.saveAs(str(tmp_path / "Wave.FCStd"))
+    document.saveAs(str(tmp_path / "Grooved.FCStd"))
     FreeCAD.closeDocument(document.Name)
-    again = FreeCAD.openDocument(str(tmp_path / "Wave.FCStd"))
+    again = FreeCAD.openDocument(str(tmp_path / "Grooved.FCStd"))
     desk.pump(0.3)
     plan = plan_in(again)
     assert not plan.Stale and not any(one.Stale for one in operations_in(plan))
@@ -177,7 +178,7 @@ def test_from_the_rack_to_a_program_and_back(desk, wave, form, remembered, tmp_p
     desk.press(desk.standard_button("Close"))
 
 
-def test_stop_keeps_what_is_finished(desk, wave, form):
+def test_stop_keeps_what_is_finished(desk, grooved, form):
     desk.press(form.compute)
     desk.wait(lambda: "D6" in form.message.text() or not form.stop.isEnabled(), "the smaller tool begins")
     if form.stop.isEnabled():
@@ -187,5 +188,5 @@ def test_stop_keeps_what_is_finished(desk, wave, form):
     assert "OK puts what is finished into the document" in form.message.text()
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    plan = plan_in(wave[0].Document)
+    plan = plan_in(grooved[0].Document)
     assert plan.Outcome == "cancelled" and plan.NotBegun.Value > 0 and plan.Machined.Value > 0
