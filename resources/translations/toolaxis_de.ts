@@ -303,10 +303,6 @@
    <translation>Eine Drehachse ist geklemmt, die andere dreht längs der Bahnen. Braucht eine Maschine auf der Karte Grenzen.</translation>
   </message>
   <message>
-   <source>Operations</source>
-   <translation>Operationen</translation>
-  </message>
-  <message>
    <source>Orientation {}</source>
    <translation>Orientierung {}</translation>
   </message>
@@ -913,6 +909,10 @@
   <message>
    <source>{}: the axes looked at so far</source>
    <translation>{}: die bisher betrachteten Achsen</translation>
+  </message>
+  <message>
+   <source>{}: {} operations</source>
+   <translation>{}: {} Operationen</translation>
   </message>
   <message>
    <source>{}: {}. Assumed: {}.</source>

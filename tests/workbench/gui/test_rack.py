@@ -151,7 +151,7 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     desk.pump(0.3)
     plan = plan_in(again)
     assert not plan.Stale and not any(one.Stale for one in operations_in(plan))
-    desk.gui.getDocument(again.Name).setEdit(plan.Name)
+    plan.ViewObject.doubleClicked()
     desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
     assert "with 2 of 2 tools" in form.message.text() and form.toolTable.rowCount() == 4

@@ -290,6 +290,8 @@ def _rack(value):
     if wrong is not None:
         raise _refusal(f"rack is {_value_text(wrong)}: give a tool library, a folder or a tool, such as "
                        "\"general-rack\", or a list of these")
+    if not items:
+        raise _refusal("the rack is empty: name at least one tool, library or folder")
     return tuple(map(str, items))
 
 

@@ -63,24 +63,23 @@ def fill_tools(table, account):
     if account is None:
         table.setRowCount(0)
         return
-    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Operations"), translate("ToolAxis", "Area"),
-             translate("ToolAxis", "Time")]
+    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Area"), translate("ToolAxis", "Time")]
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
     table.setColumnCount(len(heads))
     table.setHorizontalHeaderLabels(heads)
     table.verticalHeader().setVisible(False)
-    rows = [(f"T{one.number} {one.name}", str(one.operations), percent(one.area, account.area), clock(one.seconds))
+    rows = [(f"T{one.number} {one.name}", percent(one.area, account.area), clock(one.seconds))
             for one in account.tools]
-    rows.append((translate("ToolAxis", "changes of tool and axis"), "", "", clock(account.between)))
-    rows.append((translate("ToolAxis", "total"), str(sum(one.operations for one in account.tools)),
-                 percent(account.machined, account.area), clock(account.seconds)))
+    rows.append((translate("ToolAxis", "changes of tool and axis"), "", clock(account.between)))
+    rows.append((translate("ToolAxis", "total"), percent(account.machined, account.area), clock(account.seconds)))
     table.setRowCount(len(rows))
     for i, cells in enumerate(rows):
         for k, text in enumerate(cells):
             put(table, i, k, text, text)
     for i, one in enumerate(account.tools):
-        put(table, i, 0, rows[i][0], rows[i][0], DecorationRole=QtGui.QColor.fromRgbF(*tool_colour(one.place)))
+        told = translate("ToolAxis", "{}: {} operations").format(rows[i][0], one.operations)
+        put(table, i, 0, rows[i][0], told, DecorationRole=QtGui.QColor.fromRgbF(*tool_colour(one.place)))
     head = table.horizontalHeader()
     for k in range(1, len(heads)):
         head.setSectionResizeMode(k, QtWidgets.QHeaderView.ResizeToContents)

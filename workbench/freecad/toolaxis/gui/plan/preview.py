@@ -44,7 +44,7 @@ class Preview:
         self._timer.timeout.connect(self._grow)
 
     def show(self, plan, op):
-        """Show an operation that has passes with its tool, and thinner the passes of all others.
+        """Show an operation with its tool where it has passes, and thinner the passes of all others.
 
         Parameters
         ----------
@@ -57,6 +57,15 @@ class Preview:
         view = view_of(self.name)
         if view is None:
             return
+        self.view = view
+        if plan is not self._shown_plan:
+            self._show_others(plan, view)
+        if op.done:
+            self._show_one(plan, op, view)
+        self._timer.start()
+
+    def _show_one(self, plan, op, view):
+        """Show an operation with its tool."""
         root = coin.SoSeparator()
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
@@ -70,11 +79,8 @@ class Preview:
                       *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
                       *((tool, partial(_revolved, *solid)) for solid in solids(op.tool)), *self._left]
         self.stations = PreviewStations(op.path)
-        self.root, self.view = root, view
+        self.root = root
         view.getSceneGraph().addChild(root)
-        if plan is not self._shown_plan:
-            self._show_others(plan, view)
-        self._timer.start()
 
     def _show_others(self, plan, view):
         """Show the passes of all operations of a plan, as long as it is the one that is shown."""

@@ -98,7 +98,9 @@ class AxisView(QtCore.QObject):
         self.left = left_to_clean_up(plan)
         undone = [k for k, op in enumerate(plan.operations) if not op.done and op.number not in self.left]
         done = [k for k, op in enumerate(plan.operations) if op.done]
-        self._offer(self._titles(), (undone or done or [0])[0])
+        # With several tools some rest nearly always has no axis: what is machined is shown first.
+        first = done or undone if self._several else undone or done
+        self._offer(self._titles(), (first or [0])[0])
         self._show_operation()
 
     def show_account(self, account):
@@ -209,7 +211,7 @@ class AxisView(QtCore.QObject):
     def show_tool(self):
         """Show passes and tool of the tried axis, or of the plan's, in the 3D view."""
         op = self.tried or self.operation
-        if op is None or not op.done:
+        if op is None:
             self.preview.clear()
         else:
             self.preview.show(self.plan, op)
