@@ -35,6 +35,10 @@
    <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
   </message>
   <message>
+   <source>Area</source>
+   <translation>Fläche</translation>
+  </message>
+  <message>
    <source>Axis that turns</source>
    <translation>Achse, die dreht</translation>
   </message>
@@ -131,6 +135,14 @@
    <translation>Fläche {} (gedrehte Kopie)</translation>
   </message>
   <message>
+   <source>Faces</source>
+   <translation>Flächen</translation>
+  </message>
+  <message>
+   <source>Faces: {}</source>
+   <translation>Flächen: {}</translation>
+  </message>
+  <message>
    <source>Finishing {}</source>
    <translation>Schlichten {}</translation>
   </message>
@@ -145,6 +157,10 @@
   <message>
    <source>FreeCAD has mixed up this panel with one that was closed: open it once more, or start FreeCAD anew</source>
    <translation>FreeCAD hat dieses Fenster mit einem geschlossenen verwechselt: bitte noch einmal öffnen oder FreeCAD neu starten</translation>
+  </message>
+  <message>
+   <source>FreeCAD's library {}</source>
+   <translation>Bibliothek {} von FreeCAD</translation>
   </message>
   <message>
    <source>Give a folder.</source>
@@ -185,10 +201,6 @@
   <message>
    <source>Lean from the normal, mean</source>
    <translation>Neigung zur Normalen, Mittel</translation>
-  </message>
-  <message>
-   <source>Over the ideal length</source>
-   <translation>Über der idealen Länge</translation>
   </message>
   <message>
    <source>Left to clean-up</source>
@@ -307,6 +319,10 @@
    <translation>Ergebnis</translation>
   </message>
   <message>
+   <source>Over the ideal length</source>
+   <translation>Über der idealen Länge</translation>
+  </message>
+  <message>
    <source>Passes</source>
    <translation>Bahnen</translation>
   </message>
@@ -401,6 +417,14 @@
   <message>
    <source>Stopped after {} of the faces; OK puts these into the document.</source>
    <translation>Nach {} der Flächen angehalten; OK stellt diese ins Dokument.</translation>
+  </message>
+  <message>
+   <source>Stopped before the first face had passes.</source>
+   <translation>Angehalten, bevor die erste Fläche Bahnen hatte.</translation>
+  </message>
+  <message>
+   <source>Stopped. {} OK puts what is finished into the document.</source>
+   <translation>Angehalten. {} OK übernimmt das Fertige in das Dokument.</translation>
   </message>
   <message>
    <source>Stopped; the document is unchanged.</source>
@@ -527,6 +551,14 @@
    <translation>Neigung gegen Z</translation>
   </message>
   <message>
+   <source>Time</source>
+   <translation>Zeit</translation>
+  </message>
+  <message>
+   <source>Tool</source>
+   <translation>Werkzeug</translation>
+  </message>
+  <message>
    <source>Tool Axis: {}; tool axis {} in the document</source>
    <translation>Tool Axis: {}; Werkzeugachse {} im Dokument</translation>
   </message>
@@ -543,8 +575,16 @@
    <translation>Werkzeugachsen {}</translation>
   </message>
   <message>
+   <source>Tool libraries ({})</source>
+   <translation>Werkzeugbibliotheken ({})</translation>
+  </message>
+  <message>
    <source>Tool {}</source>
    <translation>Werkzeug {}</translation>
+  </message>
+  <message>
+   <source>Tools</source>
+   <translation>Werkzeuge</translation>
   </message>
   <message>
    <source>Tried</source>
@@ -595,6 +635,10 @@
    <translation>abgebrochen</translation>
   </message>
   <message>
+   <source>changes of tool and axis</source>
+   <translation>Wechsel von Werkzeug und Achse</translation>
+  </message>
+  <message>
    <source>checking for gouges and collisions</source>
    <translation>Konturverletzungen und Kollisionen werden geprüft</translation>
   </message>
@@ -619,8 +663,16 @@
    <translation>machbar</translation>
   </message>
   <message>
+   <source>folder of tools...</source>
+   <translation>Ordner mit Werkzeugen...</translation>
+  </message>
+  <message>
    <source>forbidden: {}{}, {}</source>
    <translation>verboten: {}{}, {}</translation>
+  </message>
+  <message>
+   <source>general rack</source>
+   <translation>allgemeines Magazin</translation>
   </message>
   <message>
    <source>infeasible (proven)</source>
@@ -629,6 +681,10 @@
   <message>
    <source>left to clean-up</source>
    <translation>Restmaterial</translation>
+  </message>
+  <message>
+   <source>library file...</source>
+   <translation>Bibliotheksdatei...</translation>
   </message>
   <message>
    <source>machine {}</source>
@@ -667,6 +723,10 @@
    <translation>nicht erreicht</translation>
   </message>
   <message>
+   <source>one tool (tab Tool)</source>
+   <translation>ein Werkzeug (Reiter Werkzeug)</translation>
+  </message>
+  <message>
    <source>optimal (proven)</source>
    <translation>optimal (nachgewiesen)</translation>
   </message>
@@ -693,6 +753,10 @@
   <message>
    <source>strip width {}, about {:.0f} passes, {}</source>
    <translation>Streifenbreite {}, etwa {:.0f} Bahnen, {}</translation>
+  </message>
+  <message>
+   <source>total</source>
+   <translation>gesamt</translation>
   </message>
   <message>
    <source>typed in below</source>
@@ -723,12 +787,24 @@
    <translation>{} Kollisionen mit dem Teil konnten nicht gesucht werden: {}</translation>
   </message>
   <message>
+   <source>{} OK puts the plan into the document.</source>
+   <translation>{} OK übernimmt den Plan in das Dokument.</translation>
+  </message>
+  <message>
+   <source>{} The reasons are on the tab Axis.</source>
+   <translation>{} Die Gründe stehen auf dem Reiter Achse.</translation>
+  </message>
+  <message>
    <source>{} at ({}, {}, {}) on face {}</source>
    <translation>{} bei ({}, {}, {}) auf Fläche {}</translation>
   </message>
   <message>
    <source>{} files in {}</source>
    <translation>{} Dateien in {}</translation>
+  </message>
+  <message>
+   <source>{} h</source>
+   <translation>{} h</translation>
   </message>
   <message>
    <source>{} is also the work offset of {}: set it for this orientation before the program runs</source>
@@ -747,6 +823,10 @@
    <translation>{} min</translation>
   </message>
   <message>
+   <source>{} not begun</source>
+   <translation>{} nicht begonnen</translation>
+  </message>
+  <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
@@ -763,12 +843,24 @@
    <translation>{} von {} Aufträgen haben eine Nullpunktverschiebung, die auch andere haben: vor einem solchen Programm für die Orientierung einstellen. Aufträge und Programme sagen es.</translation>
   </message>
   <message>
+   <source>{} of {} machined</source>
+   <translation>{} von {} bearbeitet</translation>
+  </message>
+  <message>
    <source>{} of {} sub-surfaces</source>
    <translation>{} von {} Teilflächen</translation>
   </message>
   <message>
+   <source>{} open</source>
+   <translation>{} offen</translation>
+  </message>
+  <message>
    <source>{} operations: plan.json and their CL files are written.</source>
    <translation>{} Operationen: plan.json und ihre CL-Dateien werden geschrieben.</translation>
+  </message>
+  <message>
+   <source>{} proven out of reach</source>
+   <translation>{} nachweislich unerreichbar</translation>
   </message>
   <message>
    <source>{} row {}: {} '{}' is not a length</source>
@@ -781,6 +873,10 @@
   <message>
    <source>{} so far</source>
    <translation>seit {}</translation>
+  </message>
+  <message>
+   <source>{} with {} of {} tools.</source>
+   <translation>{} mit {} von {} Werkzeugen.</translation>
   </message>
   <message>
    <source>{}, about {} left</source>
@@ -813,6 +909,10 @@
   <message>
    <source>{}: the axes looked at so far</source>
    <translation>{}: die bisher betrachteten Achsen</translation>
+  </message>
+  <message>
+   <source>{}: {} operations</source>
+   <translation>{}: {} Operationen</translation>
   </message>
   <message>
    <source>{}: {}. Assumed: {}.</source>
@@ -1059,8 +1159,20 @@
    <translation>Fügt dem Umriss eine Zeile hinzu.</translation>
   </message>
   <message>
+   <source>Advanced</source>
+   <translation>Erweitert</translation>
+  </message>
+  <message>
    <source>Allowance</source>
    <translation>Aufmaß</translation>
+  </message>
+  <message>
+   <source>Allowance on</source>
+   <translation>Aufmaß auf</translation>
+  </message>
+  <message>
+   <source>Allowances on some faces in place of the one on the tab Job, mm by the numbers of the faces.</source>
+   <translation>Aufmaße auf einzelnen Flächen an Stelle dessen auf dem Reiter Auftrag, in mm nach den Nummern der Flächen.</translation>
   </message>
   <message>
    <source>Allowed</source>
@@ -1073,6 +1185,10 @@
   <message>
    <source>Also plans the same faces by other methods, and lists what they come to.</source>
    <translation>Plant dieselben Flächen auch mit anderen Verfahren und stellt die Ergebnisse nebeneinander.</translation>
+  </message>
+  <message>
+   <source>Avoid faces</source>
+   <translation>Flächen meiden</translation>
   </message>
   <message>
    <source>Axes</source>
@@ -1179,8 +1295,16 @@
    <translation>Größter Winkel zwischen Werkzeugachse und Mitte.</translation>
   </message>
   <message>
+   <source>Greatest distance of neighbouring passes, whatever the scallop height allows; 0 for none.</source>
+   <translation>Größter Abstand benachbarter Bahnen, was auch immer die Rillenhöhe zulässt; 0 für keinen.</translation>
+  </message>
+  <message>
    <source>Greatest height left between neighbouring passes.</source>
    <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Greatest number of tools of the rack that are used.</source>
+   <translation>So viele Werkzeuge des Magazins werden höchstens eingesetzt.</translation>
   </message>
   <message>
    <source>Greatest roughness across the feed.</source>
@@ -1193,6 +1317,10 @@
   <message>
    <source>Half angle</source>
    <translation>Halber Winkel</translation>
+  </message>
+  <message>
+   <source>Held side</source>
+   <translation>Gespannte Seite</translation>
   </message>
   <message>
    <source>Holder, heights from its lower face</source>
@@ -1227,12 +1355,24 @@
    <translation>Diese Vorschubrichtung und die Grenze ihrer Teilfläche behalten, wenn der Plan neu berechnet wird.</translation>
   </message>
   <message>
+   <source>Lead-in radius</source>
+   <translation>Anfahrradius</translation>
+  </message>
+  <message>
+   <source>Lean at least</source>
+   <translation>Neigung mindestens</translation>
+  </message>
+  <message>
    <source>Least</source>
    <translation>Kleinste</translation>
   </message>
   <message>
    <source>Least angle between the tool axis and the middle.</source>
    <translation>Kleinster Winkel zwischen Werkzeugachse und Mitte.</translation>
+  </message>
+  <message>
+   <source>Least angle of ball ends to the normal of the face, so that the tip does not cut; 0 for none.</source>
+   <translation>Kleinster Winkel von Kugelfräsern zur Flächennormalen, damit die Spitze nicht schneidet; 0 für keinen.</translation>
   </message>
   <message>
    <source>Least turn of the tool axis about the middle.</source>
@@ -1291,6 +1431,14 @@
    <translation>Zahl der Teilflächen jeder Fläche.</translation>
   </message>
   <message>
+   <source>Numbers of faces of the part that no tool may touch.</source>
+   <translation>Nummern von Flächen des Teils, die kein Werkzeug berühren darf.</translation>
+  </message>
+  <message>
+   <source>One tool, or a rack to choose from: large tools begin, smaller ones finish what they leave.</source>
+   <translation>Ein Werkzeug, oder ein Magazin zur Auswahl: Große beginnen, kleinere bearbeiten, was sie übrig lassen.</translation>
+  </message>
+  <message>
    <source>Other feed</source>
    <translation>Anderer Vorschub</translation>
   </message>
@@ -1321,6 +1469,14 @@
   <message>
    <source>Plan the face with the axis that was tried.</source>
    <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
+  </message>
+  <message>
+   <source>Plan with</source>
+   <translation>Planen mit</translation>
+  </message>
+  <message>
+   <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
+   <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
   </message>
   <message>
    <source>Radius of the rounded corner.</source>
@@ -1375,8 +1531,20 @@
    <translation>Spindel</translation>
   </message>
   <message>
+   <source>Step-over at most</source>
+   <translation>Bahnabstand höchstens</translation>
+  </message>
+  <message>
    <source>Stick-out</source>
    <translation>Auskraglänge</translation>
+  </message>
+  <message>
+   <source>Stock</source>
+   <translation>Schruppaufmaß</translation>
+  </message>
+  <message>
+   <source>Stock and faces</source>
+   <translation>Schruppaufmaß und Flächen</translation>
   </message>
   <message>
    <source>Stock left on the faces.</source>
@@ -1415,6 +1583,18 @@
    <translation>Der Rest des Teils wird immer gemieden, angekreuzte Körper auch.</translation>
   </message>
   <message>
+   <source>The side of the part that is held in the clamping: no tool goes there, and what of the faces lies there is left for another clamping.</source>
+   <translation>Die Seite des Teils, die gespannt ist: Dort fährt kein Werkzeug hin, und was von den Flächen dort liegt, bleibt einer anderen Aufspannung.</translation>
+  </message>
+  <message>
+   <source>The tools of the plan in their colours, what they machine, and their time.</source>
+   <translation>Die Werkzeuge des Plans in ihren Farben, was sie bearbeiten, und ihre Zeit.</translation>
+  </message>
+  <message>
+   <source>The tools that can be chosen: number, name.</source>
+   <translation>Die Werkzeuge, die zur Wahl stehen: Nummer, Name.</translation>
+  </message>
+  <message>
    <source>Tilt</source>
    <translation>Neigung</translation>
   </message>
@@ -1435,6 +1615,14 @@
    <translation>Werkzeug bei</translation>
   </message>
   <message>
+   <source>Tools</source>
+   <translation>Werkzeuge</translation>
+  </message>
+  <message>
+   <source>Tools of the rack</source>
+   <translation>Werkzeuge des Magazins</translation>
+  </message>
+  <message>
    <source>Try the passes along the other parameter lines, with the same axis.</source>
    <translation>Probiert mit derselben Achse die Bahnen entlang der anderen Parameterlinien aus.</translation>
   </message>
@@ -1443,12 +1631,20 @@
    <translation>Drehung</translation>
   </message>
   <message>
+   <source>Use at most</source>
+   <translation>Höchstens</translation>
+  </message>
+  <message>
    <source>Use this axis</source>
    <translation>Diese Achse verwenden</translation>
   </message>
   <message>
    <source>What other methods need for the same faces.</source>
    <translation>Was andere Verfahren für dieselben Flächen brauchen.</translation>
+  </message>
+  <message>
+   <source>What roughing left on the faces, at least the allowance: shank and holder keep clear of it; 0 for finished faces.</source>
+   <translation>Was das Schruppen auf den Flächen ließ, mindestens das Aufmaß: Schaft und Halter halten Abstand davon; 0 für fertige Flächen.</translation>
   </message>
   <message>
    <source>What the axis comes to, and beside it what the one comes to that is tried.</source>
@@ -1481,6 +1677,10 @@
   <message>
    <source>any axis</source>
    <translation>jede Achse</translation>
+  </message>
+  <message>
+   <source>any number of tools</source>
+   <translation>beliebig viele Werkzeuge</translation>
   </message>
   <message>
    <source>at most</source>
@@ -1535,10 +1735,6 @@
    <translation>der Rillenhöhe folgend</translation>
   </message>
   <message>
-   <source>whichever is shorter</source>
-   <translation>die kürzeren von beiden</translation>
-  </message>
-  <message>
    <source>greatest jerk along passes</source>
    <translation>größter Ruck längs der Bahnen</translation>
   </message>
@@ -1581,6 +1777,10 @@
   <message>
    <source>two-point contact</source>
    <translation>Berührung an zwei Punkten</translation>
+  </message>
+  <message>
+   <source>whichever is shorter</source>
+   <translation>die kürzeren von beiden</translation>
   </message>
   <message>
    <source>whole faces</source>

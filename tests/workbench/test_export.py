@@ -103,7 +103,7 @@ def test_what_cannot_be_written_leaves_the_folder_as_it_was(made, tmp_path):
 def test_operations_that_do_not_go_together_are_refused(document, parts, tmp_path):
     thing = parts.block(document)
     name = parts.sculptured_name(thing)
-    made = [parts.planned(document, (thing, name), feedrate=rate)[0] for rate in (500.0, 600.0)]
-    with pytest.raises(InvalidInput, match="different feed rates: select those that go together"):
+    made = [parts.planned(document, (thing, name), allowance=value)[0] for value in (0.0, 0.1)]
+    with pytest.raises(InvalidInput, match="different allowances: select those that go together"):
         export(made, tmp_path / "plan")
     assert not list(tmp_path.iterdir())

@@ -1,11 +1,35 @@
 """Small whole parts for the tests: a roof that two axes suit better than one, and a wheel with a few blades."""
 
-from math import pi, sin
+from math import exp, pi, sin
 
 import Part as FreecadPart
 from FreeCAD import Vector
 
 BLADE_TOOL = {"tool": "torus:6x1", "stickout": 40.0, "holder": ((8.0, 0.0), (8.0, 30.0)), "scallop": 0.3}
+
+#: Two ball ends with holders, of which the larger one does not reach the bottom of the groove of `grooved`.
+RACK = """
+[holders.SLIM]
+holder = [[8.0, 0.0], [8.0, 30.0]]
+
+[[tool]]
+number = 1
+title = "Ball D20, 60 out"
+kind = "ball"
+diameter = 20.0
+stickout = 60.0
+holder = "SLIM"
+feedrate = 1500.0
+spindle = 6000.0
+
+[[tool]]
+number = 7
+title = "Ball D6, 40 out"
+kind = "ball"
+diameter = 6.0
+stickout = 40.0
+holder = "SLIM"
+"""
 
 
 def interpolated(rows):
@@ -33,6 +57,12 @@ def wave(document, name="Wave"):
     """A block whose top rises, falls and rises, so that several axes take less cutting than one."""
     return block_under(document, interpolated([[Vector(x, y, 14 + 4 * sin(pi * x / 15)) for y in (0, 6, 12, 18)]
                                                for x in range(0, 31, 3)]), name)
+
+
+def grooved(document, name="Grooved"):
+    """A block with a gentle top in which a narrow groove runs; the name of that face beside it."""
+    return block_under(document, interpolated([[Vector(x, y, 12 - 0.004 * (x - 30) ** 2 - 4 * exp(-((x - 30) / 5) ** 2))
+                                                for y in (0, 13, 26, 40)] for x in range(0, 61, 2)]), name)
 
 
 def wheel(document, count=3, name="Wheel"):

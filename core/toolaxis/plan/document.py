@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import Fault, about
@@ -136,23 +136,73 @@ def _smooth_piece(part: Part, number: int, label: str) -> Face:
     return next((piece for piece in split_at_kinks(face) if piece.label == label), face)
 
 
+def region_of(face: Face, part: Part) -> list[list[list[float]]] | None:
+    """Trim loops of a sub-surface in (u, v); None for a whole face of a part, or a whole piece of one between kinks.
+
+    Parameters
+    ----------
+    face : Face
+    part : Part
+    """
+    whole = _smooth_piece(part, face.number, face.label)
+    same = len(whole.trims) == len(face.trims) and all(map(np.array_equal, whole.trims, face.trims))
+    return None if same else [_rows(loop) for loop in face.trims]
+
+
+def sub_surface_from(part: Part, number: int, label: str, region: Sequence[ArrayLike] | None) -> Face:
+    """The sub-surface of a part that `region_of` tells.
+
+    Parameters
+    ----------
+    part : Part
+    number : int
+        Of the face.
+    label : str
+        Of the sub-surface.
+    region : sequence of (m, 2) array_like, or None
+    """
+    face = _smooth_piece(part, number, label)
+    if region is not None:
+        return face.trimmed(tuple(np.array(loop, dtype=float) for loop in region), label)
+    return face if face.label == label else face.trimmed(face.trims, label)  # a piece that is all of its face
+
+
+def zone_documents(zones: Sequence[Zone]) -> list[Document]:
+    """What an operation leaves, as documents that `json.dump` takes.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+    """
+    return [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops], "avoided": list(zone.avoided)}
+            for zone in zones]
+
+
+def zones_from(documents: Sequence[Mapping[str, Any]]) -> tuple[Zone, ...]:
+    """The zones that `zone_documents` tells.
+
+    Parameters
+    ----------
+    documents : sequence of mapping
+    """
+    return tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"]),
+                         "avoided": tuple(zone.get("avoided", ()))}) for zone in documents)
+
+
 def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_file: str | None) -> Document:
-    whole = _smooth_piece(plan.part, op.face.number, op.face.label)
-    same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
     path = op.path
     return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
             "label": op.face.label, "tool": 1 + plan.tools.index(op.tool),
             "rest_of": list(op.rest_of), "unreachable": op.unreachable,
             "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
-            "region": None if same else [_rows(loop) for loop in op.face.trims],
+            "region": region_of(op.face, plan.part),
             "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
             "cl_file": cl_file, "failure_file": failure_file, "travel": op.travel,
             "points": 0 if path is None else len(path.cl),
             "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
             "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
             "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
-            "zones": [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops], "avoided": list(zone.avoided)}
-                      for zone in op.zones]}
+            "zones": zone_documents(op.zones)}
 
 
 def account_document(found: PartAccount) -> Document:
@@ -231,16 +281,10 @@ def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Doc
 
 def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Tool],
                     path: ToolPath | None) -> Operation:
-    face, label = _smooth_piece(part, document["face"], document["label"]), document["label"]
-    if document["region"] is not None:
-        face = face.trimmed(tuple(np.array(loop, dtype=float) for loop in document["region"]), label)
-    elif face.label != label:  # a piece that is all of its face
-        face = face.trimmed(face.trims, label)
+    face = sub_surface_from(part, document["face"], document["label"], document["region"])
     frame = document["work_coordinates"]
     axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
-    zones = tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"]),
-                          "avoided": tuple(zone.get("avoided", ()))})
-                  for zone in document.get("zones", ()))
+    zones = zones_from(document.get("zones", ()))
     time = document.get("time")
     known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
     rotary = document.get("rotary") or [()]
@@ -279,8 +323,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                            "avoid": tuple(given.get("avoid", ())),
                            "allowance_on": tuple((int(number), float(value))
                                                  for number, value in given.get("allowance_on", ()))})
-    part = part.avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
-    part = part.leave_allowances(inputs.allowance, dict(inputs.allowance_on))
+    part = inputs.prepare_part(part)
     for numbers in document["part"].get("joined", ()):
         part = join(part, numbers, np.inf, np.inf)
     tools = tuple(tool_from(one) for one in document["tools"])

@@ -155,6 +155,17 @@ class PlanInputs:
             raise InvalidInput(f"stock is {self.stock} mm, below the allowance of {most} mm: give at least "
                                "the allowance, or 0 where no stock is to be looked out for")
 
+    def prepare_part(self, part: Part) -> Part:
+        """A part with its faces to be avoided, its held side, and what is left on its faces.
+
+        Parameters
+        ----------
+        part : Part
+            With all its faces, none joined.
+        """
+        prepared = part.avoid_faces(self.avoid).hold_side(self.half_space_held)
+        return prepared.leave_allowances(self.allowance, dict(self.allowance_on))
+
     def allowance_of(self, face: Face) -> float:
         """What is left on a face, mm.
 

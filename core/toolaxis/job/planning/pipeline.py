@@ -225,8 +225,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         inputs.check_rack(rack.tools)
     else:
         inputs.check_tool(cutter)
-    loaded = load(part).avoid_faces(inputs.avoid).hold_side(inputs.half_space_held)
-    loaded = loaded.leave_allowances(inputs.allowance, dict(inputs.allowance_on))
+    loaded = inputs.prepare_part(load(part))
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))

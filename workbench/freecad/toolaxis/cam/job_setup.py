@@ -3,6 +3,7 @@
 import re
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import count
 
 import FreeCAD
 from freecad.toolaxis.cam.tools import add_controller, fill_controller
@@ -82,7 +83,7 @@ def bare_job(document, group, frame):
     controllers = {}
     for one in group:
         if tool_of(one) not in controllers:
-            controllers[tool_of(one)] = _controller(job, len(controllers) + 1, one)
+            controllers[tool_of(one)] = _controller(job, controllers.values(), one)
     names = ", ".join(one.label for one in group)
     axes = "; ".join(dict.fromkeys("({:.6f}, {:.6f}, {:.6f})".format(*one.matrix[:3, 2]) for one in group))
     job.Description = translate("ToolAxis", "Tool Axis: {}; tool axis {} in the document").format(names, axes)
@@ -99,10 +100,16 @@ def plain(label):
     return re.sub(r"[()]", "", re.sub(r"\s*\(([^()]*)\)", r", \1", label))
 
 
-def _controller(job, number, one):
-    """The tool controller for the tool of an operation; the first one is what FreeCAD gives to every job."""
-    wanted = one.tool, one.inputs.feedrate, one.inputs.spindle, number
-    if number > 1:
+def _controller(job, made, one):
+    """The tool controller for the tool of an operation; the first one is what FreeCAD gives to every job.
+
+    Its number is the tool's own place in the magazine, where no other tool of the job has it.
+    """
+    taken = {controller.ToolNumber for controller in made}
+    free = next(number for number in count(1) if number not in taken)
+    own = one.tool.number
+    wanted = one.tool, one.inputs.feedrate, one.inputs.spindle, own if own and own not in taken else free
+    if made:
         return add_controller(job, wanted)
     fill_controller(job.Tools.Group[0], wanted)
     return job.Tools.Group[0]
@@ -115,7 +122,7 @@ def tool_of(one):
     ----------
     one : Passes
     """
-    cutter = one.tool.name, one.tool.flute_length, one.inputs.stickout, one.inputs.shank
+    cutter = one.tool.name, one.tool.flute_length, one.inputs.stickout, one.inputs.shank, one.tool.number
     return *cutter, one.inputs.feedrate, one.inputs.spindle
 
 

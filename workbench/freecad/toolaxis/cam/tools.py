@@ -93,6 +93,16 @@ def _sizes(tool, shape, new):
     return found
 
 
+def label_of(tool):
+    """What a tool is called in a job: its title, as far as programs may tell it in comments, else its short form.
+
+    Parameters
+    ----------
+    tool : toolaxis.tools.tool.Tool
+    """
+    return tool.title.translate(str.maketrans("()", "[]")) or tool.name
+
+
 def fill_controller(controller, wanted):
     """Give a tool controller a cutter, feeds and speed.
 
@@ -105,10 +115,10 @@ def fill_controller(controller, wanted):
     """
     tool, feedrate, spindle, number = wanted
     document, old = controller.Document, controller.Tool
-    controller.Tool = add_bit(document, tool, tool.name)
+    controller.Tool = add_bit(document, tool, label_of(tool))
     if old is not None:
         old.Proxy.onDelete(old)
-    controller.Label = f"TC: {tool.name}"
+    controller.Label = f"TC: {label_of(tool)}"
     controller.ToolNumber = number
     controller.HorizFeed = controller.VertFeed = feedrate / 60
     controller.SpindleSpeed = spindle
@@ -125,8 +135,9 @@ def add_controller(job, wanted):
     """
     import Path.Tool.Controller as Controllers
 
-    bit = add_bit(job.Document, wanted[0], wanted[0].name)
-    controller = Controllers.Create(f"TC: {wanted[0].name}", bit, wanted[3])
+    label = label_of(wanted[0])
+    bit = add_bit(job.Document, wanted[0], label)
+    controller = Controllers.Create(f"TC: {label}", bit, wanted[3])
     job.Proxy.addToolController(controller)
     controller.HorizFeed = controller.VertFeed = wanted[1] / 60
     controller.SpindleSpeed = wanted[2]

@@ -1,5 +1,7 @@
 """The one place that talks to FreeCAD's CAM workbench, by what its objects have and not by its version."""
 
+from contextlib import suppress
+from pathlib import Path as FilePath
 from pathlib import PurePosixPath
 
 
@@ -66,6 +68,21 @@ def _body(bit):
     if thickness and length and length > (flute or 0.0):
         body["shank"] = [(thickness / 2, 0.0), (thickness / 2, length)]
     return body
+
+
+def tool_libraries():
+    """The tool libraries of FreeCAD's CAM, (what is shown, file): the user's own, then those that come with it."""
+    folders = []
+    with suppress(Exception):  # a FreeCAD without CAM, or one that keeps no libraries in files
+        import Path.Preferences as CamPreferences
+
+        folders = [FilePath(str(CamPreferences.getAssetPath())) / "Tool" / "Library",
+                   FilePath(str(CamPreferences.getBuiltinLibraryPath()))]
+    found = {}
+    for folder in folders:
+        for file in sorted(folder.glob("*.fctl")):
+            found.setdefault(file.stem, str(file))
+    return list(found.items())
 
 
 def controllers(document):

@@ -1,7 +1,8 @@
 """What a job in a document is given, as one value that scripts, panels and the tree share."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import radians
 
 from freecad.toolaxis.document.children import frame_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
@@ -88,6 +89,23 @@ class JobInputs:
     passes : str
         One of `toolaxis.plan.choices.PASSES`: along parameters of the face, in parallel planes that contain the axis,
         in a field, or the shorter of the first and the last.
+    rack : tuple of str
+        What holds the tools to choose from: names, files and folders as `toolaxis.load_tools` takes them; empty where
+        `tool` is the only one.
+    most_tools : int or None
+        Greatest number of them that are used.
+    tool_number, tool_title : int, str
+        Place of `tool` in the magazine, 0 for none, and what the shop calls it.
+    stock, greatest_step_over, lead : float
+        What roughing left, greatest distance of passes, and radius of the arcs to and from passes; 0 for none.
+    least_lean : float
+        Least angle of ball ends to the normal, degrees.
+    allowance_on : str
+        What is left on some faces in place of `allowance`, "3,5-8=0.3;9=0.1" by their numbers.
+    avoid_faces : str
+        Numbers of faces of the part that no tool may touch, "3,5-8".
+    held : str
+        The side that is held in the clamping, "z<12.5", in the document's space.
     """
 
     faces: tuple = ()
@@ -114,12 +132,23 @@ class JobInputs:
     roughness: float = ROUGHNESS
     tolerance: float = TOLERANCE
     passes: str = ISO
+    rack: tuple = ()
+    most_tools: int | None = None
+    tool_number: int = 0
+    tool_title: str = ""
+    stock: float = 0.0
+    least_lean: float = 0.0
+    greatest_step_over: float = 0.0
+    allowance_on: str = ""
+    lead: float = 0.0
+    avoid_faces: str = ""
+    held: str = ""
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
             rows = tuple((float(radius), float(z)) for radius, z in getattr(self, name) or ())
             object.__setattr__(self, name, rows)
-        for name in ("faces", "obstacles", "pieces"):
+        for name in ("faces", "obstacles", "pieces", "rack"):
             object.__setattr__(self, name, tuple(getattr(self, name) or ()))
         if not keeps_roughness(self.strategy):
             object.__setattr__(self, "roughness", ROUGHNESS)
@@ -139,8 +168,13 @@ class JobInputs:
         """Whether the axis moves while it cuts."""
         return self.strategy != INDEXED
 
+    @property
+    def placed(self):
+        """Whether something is asked for in the document's space, in which the part has to stay where it is."""
+        return bool(self.limits or self.held)
+
     def assembled(self):
-        """The whole tool.
+        """The whole tool, where it is the only one.
 
         Raises
         ------
@@ -152,7 +186,40 @@ class JobInputs:
         body = {name: [list(row) for row in getattr(self, name)] for name in ("shank", "holder") if getattr(self, name)}
         if self.flute_length:
             body["flute_length"] = self.flute_length
-        return Tool.parse(self.tool, stickout=self.stickout, **body)
+        return Tool.parse(self.tool, stickout=self.stickout or None, number=self.tool_number or None,
+                          title=self.tool_title, **body)
+
+    def tools(self):
+        """The tools to plan with: those of the rack with rates for all of them, else the only one.
+
+        Returns
+        -------
+        tuple of toolaxis.tools.tool.Tool
+
+        Raises
+        ------
+        InvalidInput
+            When the sizes make no tool, or the rack cannot be read.
+        """
+        if not self.rack:
+            return (self.assembled(),)
+        from toolaxis.job.inputs.tool_library import load_library
+
+        return tuple(replace(tool, feedrate=tool.feedrate or self.feedrate, spindle=tool.spindle or self.spindle)
+                     for tool in load_library(self.rack).tools)
+
+    def with_tool(self, tool):
+        """The same with one tool of the rack as the only one, at its own rates.
+
+        Parameters
+        ----------
+        tool : toolaxis.tools.tool.Tool
+        """
+        rows = {name: () if getattr(tool, name) is None else tuple(map(tuple, getattr(tool, name).tolist()))
+                for name in ("shank", "holder")}
+        return replace(self, rack=(), most_tools=None, tool=tool.name, stickout=tool.stickout or 0.0,
+                       flute_length=flute_of(tool), feedrate=tool.feedrate or self.feedrate,
+                       spindle=tool.spindle or self.spindle, tool_number=tool.number, tool_title=tool.title, **rows)
 
     def job(self):
         """The same as the library knows it.
@@ -162,15 +229,41 @@ class JobInputs:
         InvalidInput
             When a value is out of range.
         """
+        from toolaxis.job.inputs.spec import numbers_to_avoid, parse_allowances
         from toolaxis.plan.plan import PlanInputs as JobInputs
         from toolaxis.tolerances import Tolerance
 
         return JobInputs(self.scallop, self.allowance, method=self.strategy if self.moves else self.method,
                          objective=self.objective, direction=self.direction,
                          limits="" if self.limits.startswith(PREFIX) else self.limits, feedrate=self.feedrate,
-                         spindle=self.spindle, tolerance=Tolerance.of(self.tolerance),
+                         spindle=self.spindle,
+                         tolerance=replace(Tolerance.of(self.tolerance), least_lean=radians(self.least_lean)),
                          roughness=self.roughness / 1000 if keeps_roughness(self.strategy) else 0.0,
-                         passes=self.passes)
+                         passes=self.passes, avoid=numbers_to_avoid(self.avoid_faces), held=self.held,
+                         stock=self.stock, greatest_step_over=self.greatest_step_over,
+                         allowance_on=parse_allowances(self.allowance_on), lead=self.lead)
+
+    def check_tools(self):
+        """Check the tools, and that what is asked for goes with them and with the parts.
+
+        Raises
+        ------
+        InvalidInput
+            When a value is out of range, or does not go with the tools.
+        """
+        from toolaxis.errors import InvalidInput
+        from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
+
+        job, tools = self.job(), self.tools()
+        if self.rack and len(tools) > 1:
+            job.check_rack(sorted(tools, key=lambda tool: -tool.radius))
+            check_rack_inputs(RackInputs(self.method, self.moves, self.regions is not None,
+                                         self.orientations is not None, bool(self.pieces), self.compare))
+        else:
+            job.check_tool(tools[0])
+        if len(self.things) > 1 and (job.avoid or job.allowance_on):
+            raise InvalidInput("faces to avoid and allowances on faces are numbered in one part and several are "
+                               "chosen: choose faces of one part")
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes, and the strategy.
@@ -208,7 +301,10 @@ def inputs_of(thing):
                      thing.Objective, thing.Direction, round(60 * thing.FeedRate.Value, 9),
                      thing.SpindleSpeed, count_from(thing.Regions), count_from(thing.Orientations), thing.Method,
                      thing.Blades, thing.Compare, tuple(piece for piece in pieces if piece is not None),
-                     thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern)
+                     thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern,
+                     tuple(thing.Rack), thing.MostTools or None, thing.ToolNumber, thing.ToolTitle, thing.Stock.Value,
+                     thing.LeastLean.Value, thing.GreatestStepOver.Value, thing.AllowanceOn, thing.Lead.Value,
+                     thing.AvoidFaces, thing.Held)
 
 
 def flute_of(tool):

@@ -44,7 +44,20 @@ INPUTS = (
              STRATEGIES),
     Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, for strategies that look at it"),
     Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and turn it to the others"),
-    Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"))
+    Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"),
+    Property("StringList", "Rack", _ASKED, "Tool libraries, folders and tools to choose from; nothing: the tool above"),
+    Property("Integer", "MostTools", _ASKED, "Greatest number of tools of the rack; 0: any number"),
+    Property("Integer", "ToolNumber", _ASKED, "Place of the tool in the magazine; 0: none"),
+    Property("String", "ToolTitle", _ASKED, "What the shop calls the tool"),
+    Property("Length", "Stock", _ASKED, "What roughing left; double-click the operation to change it", True),
+    Property("Angle", "LeastLean", _ASKED, "Least angle of ball ends to the normal"),
+    Property("Length", "GreatestStepOver", _ASKED, "Greatest distance of passes, 0: none; double-click the operation "
+             "to change it", True),
+    Property("String", "AllowanceOn", _ASKED, "Allowances on some faces: 3,5-8=0.3;9=0.1"),
+    Property("Length", "Lead", _ASKED, "Radius of the arcs to and from passes, 0: straight ramps; double-click the "
+             "operation to change it", True),
+    Property("String", "AvoidFaces", _ASKED, "Faces of the part that no tool may touch: 3,5-8"),
+    Property("String", "Held", _ASKED, "The side that is held in the clamping: z<12.5"))
 LOCKS = (
     Property("Bool", "AxisLocked", _LOCKS, "The axis is kept when the operation is computed again"),
     Property("Bool", "FeedLocked", _LOCKS, "The feed direction is kept when the operation is computed again"),
@@ -208,7 +221,10 @@ def set_inputs(thing, inputs):
            CutPattern=inputs.passes,
            FeedRate=inputs.feedrate / 60, SpindleSpeed=inputs.spindle, Regions=str(inputs.regions or ""),
            Orientations=str(inputs.orientations or ""), Method=inputs.method, Blades=inputs.blades,
-           Compare=inputs.compare, Strategy=inputs.strategy, Roughness=inputs.roughness)
+           Compare=inputs.compare, Strategy=inputs.strategy, Roughness=inputs.roughness, Rack=list(inputs.rack),
+           MostTools=inputs.most_tools or 0, ToolNumber=inputs.tool_number, ToolTitle=inputs.tool_title,
+           Stock=inputs.stock, LeastLean=inputs.least_lean, GreatestStepOver=inputs.greatest_step_over,
+           AllowanceOn=inputs.allowance_on, Lead=inputs.lead, AvoidFaces=inputs.avoid_faces, Held=inputs.held)
 
 
 def set_results(thing, found, not_checked):

@@ -7,10 +7,13 @@ import FreeCAD
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.operation import INPUTS, compare, set_inputs, watch
+from freecad.toolaxis.document.plan_account import account_of, account_text
 from freecad.toolaxis.document.properties import Property, Proxy, assign
 from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.document.staleness import changed_inputs, digest
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
+
+from toolaxis.plan.baseline import clock
 
 _FOUND, _KEPT = "Result", "Tool Axis"
 
@@ -23,11 +26,19 @@ FIGURES = (
     Property("Integer", "DifferentAxes", _FOUND, "Number of different axes", True),
     Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion of all operations", True),
     Property("Length", "Travel", _FOUND, "Length of entries, exits and links", True),
-    Property("Time", "MachiningTime", _FOUND, "Time of all operations, changes of the axis included", True))
+    Property("Time", "MachiningTime", _FOUND, "Time of all operations, changes of the axis included", True),
+    Property("Area", "FaceArea", _FOUND, "Area of the faces, where several tools were planned with", True),
+    Property("Area", "Machined", _FOUND, "What of it is machined", True),
+    Property("Area", "ProvenOutOfReach", _FOUND, "What of it is proven to be out of reach of every tool", True),
+    Property("Area", "Open", _FOUND, "What of it was tried and stays open", True),
+    Property("Area", "NotBegun", _FOUND, "What of it was not begun when the plan was stopped", True),
+    Property("StringList", "ToolsUsed", _FOUND, "Tools with their operations and times", True))
 KEPT = (
     Property("String", "Options", _KEPT, "Length against number of axes, JSON", True, True),
     Property("String", "Baselines", _KEPT, "What other methods come to, JSON", True, True),
     Property("String", "BladesFound", _KEPT, "Blades and copies, JSON", True, True),
+    Property("String", "Account", _KEPT, "What several tools come to, JSON", True, True),
+    Property("String", "InNoOperation", _KEPT, "What of the faces is in no operation, JSON", True, True),
     Property("String", "PlannedWith", _KEPT, "Inputs at the time of planning, JSON", True, True),
     Property("String", "Made", _KEPT, "Names and labels of operations and turned copies, JSON", True, True))
 #: Sentences that are told of operations out of date, and operations that are named in one.
@@ -172,7 +183,23 @@ def keep_plan(thing, inputs, plan):
     assign(thing, Outcome=plan.outcome, Warnings=list(plan.part.warnings), SubSurfaces=len(plan.operations),
            DifferentAxes=plan.orientations, CuttingLength=float(plan.length), Travel=float(plan.travel),
            MachiningTime=float(plan.seconds), Stale=False, StaleReasons=[])
+    _keep_account(thing, plan)
     FreeCAD.Console.PrintLog(f"Tool Axis: {len(plan.operations)} operations, {len(copies)} turned copies\n")
+
+
+def _keep_account(thing, plan):
+    """Write what several tools come to into a whole plan; nothing where there is one."""
+    if len(plan.tools) < 2:
+        assign(thing, Account="", InNoOperation="", ToolsUsed=[])
+        return
+    found = account_of(plan)
+    thing.Account = account_text(found)
+    thing.InNoOperation = json.dumps({"unplanned": [{**one._asdict(), "point": list(one.point)}
+                                                    for one in plan.unplanned],
+                                      "held": [one._asdict() for one in plan.held]})
+    assign(thing, FaceArea=found.area, Machined=found.machined, ProvenOutOfReach=found.unreachable, Open=found.open,
+           NotBegun=found.not_begun,
+           ToolsUsed=[f"T{one.number} {one.name}: {one.operations}, {clock(one.seconds)}" for one in found.tools])
 
 
 def keep_figures(thing, plan):

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import dataclass, replace
-from math import pi
+from math import inf
 
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.passes import read_back
@@ -84,12 +84,39 @@ class OperationRecord:
         tool : toolaxis.tools.tool.Tool
         inputs : toolaxis.plan.plan.PlanInputs
         """
-        from toolaxis.plan.operation import Operation
         from toolaxis.plan.plan import Plan
 
         part = self.joined(part)
-        made = Operation(1, self.face(part), tool, self.orientation, self.path, self.frame)
+        made = self.operation(1, part, tool)
+        part = part if inputs.stock == 0 else part.with_stock(inputs.stock, self.stock_faces(part))
         return Plan(part, (tool,), inputs, (made,), tuple(bodies), self.frame.origin, "complete")
+
+    def operation(self, number, part, tool):
+        """The operation as the library knows it, with what it leaves.
+
+        Parameters
+        ----------
+        number : int
+        part : toolaxis.shape.part.Part
+            As `joined` gives it.
+        tool : toolaxis.tools.tool.Tool
+        """
+        from toolaxis.plan.document import zones_from
+        from toolaxis.plan.operation import Operation
+
+        return Operation(number, self.face(part), tool, self.orientation, self.path,
+                         None if self.path is None else self.frame, zones_from(self.details.get("zones", ())),
+                         unreachable=self.details.get("unreachable", 0.0))
+
+    def stock_faces(self, part):
+        """Numbers of the faces that had stock when the operation was planned.
+
+        Parameters
+        ----------
+        part : toolaxis.shape.part.Part
+            As `joined` gives it.
+        """
+        return set(self.details.get("stock_faces", ())) | set(part.face(self.details["face"]).numbers)
 
     @property
     def frame(self):
@@ -109,7 +136,7 @@ class OperationRecord:
         from toolaxis.skin.join import join
 
         members = self.details.get("members")
-        return join(part, members, corner=pi) if members and not part.face(members[0]).members else part
+        return join(part, members, inf, inf) if members and not part.face(members[0]).members else part
 
     def face(self, part):
         """The sub-surface, of the part as `joined` gives it.
@@ -118,12 +145,6 @@ class OperationRecord:
         ----------
         part : toolaxis.shape.part.Part
         """
-        import numpy as np
+        from toolaxis.plan.document import sub_surface_from
 
-        from toolaxis.shape.kinks import split_at_kinks
-
-        whole = part.face(self.details["face"])
-        label = self.details["label"]
-        face = next((piece for piece in split_at_kinks(whole) if piece.label == label), whole)
-        region = self.details["region"]
-        return face if region is None else face.trimmed(tuple(np.array(loop) for loop in region), label)
+        return sub_surface_from(part, self.details["face"], self.details["label"], self.details["region"])

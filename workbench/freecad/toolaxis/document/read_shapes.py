@@ -78,6 +78,17 @@ class ShapesRead:
         """
         return len(self.shapes) == 1 and set(self.numbers) == {face.number for face in part.sculptured}
 
+    def prepared(self, inputs, progress):
+        """The same as `read`, with faces to avoid, held side and allowances as a job asks for them.
+
+        Parameters
+        ----------
+        inputs : toolaxis.plan.plan.PlanInputs
+        progress : toolaxis.progress.Progress
+        """
+        part, bodies = self.read(progress)
+        return inputs.prepare_part(part), bodies
+
     def read(self, progress):
         """The part and the bodies to avoid, as the library knows them.
 
@@ -121,6 +132,20 @@ def numbered(inputs, shapes):
         number = number_in(thing, shape, name)
         found.setdefault(offset + number, (thing, name, number))
     return found
+
+
+def every_face(things, shapes):
+    """All faces of some parts by their numbers, counted through all of them; as `numbered` gives those chosen.
+
+    Parameters
+    ----------
+    things : sequence of App.DocumentObject
+    shapes : sequence of Part.Shape
+        One for each of them.
+    """
+    rows = [(thing, f"Face{k}", k) for thing, shape in zip(things, shapes, strict=True)
+            for k in range(1, len(shape.Faces) + 1)]
+    return dict(enumerate(rows, 1))
 
 
 def titles_of(inputs):

@@ -16,7 +16,9 @@ _SUMS = 8
 _GRID = 4
 #: Inputs that older documents do not have, with what stood for them.
 _USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS,
-          "flute_length": 0.0, "passes": ISO}
+          "flute_length": 0.0, "passes": ISO, "rack": (), "most_tools": None, "tool_number": 0, "tool_title": "",
+          "stock": 0.0, "least_lean": 0.0, "greatest_step_over": 0.0, "allowance_on": "", "lead": 0.0,
+          "avoid_faces": "", "held": ""}
 
 
 def signature(things, obstacles=(), turned=False):
@@ -131,7 +133,7 @@ def standing(operation):
     """
 
     inputs = inputs_of(operation)
-    return digest(inputs), signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
+    return digest(inputs), signature([inputs.faces[0][0]], inputs.obstacles, inputs.placed)
 
 
 def why_stale(operation):
@@ -157,7 +159,7 @@ def why_stale(operation):
     reasons += _changes(planned, now)
     reasons += missing(operation)
     try:
-        found = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
+        found = signature([inputs.faces[0][0]], inputs.obstacles, inputs.placed)
     except ToolAxisError as reason:
         return [*reasons, str(reason)]
     (thing, name), (part, planned_name) = inputs.faces[0], planned["faces"][0]
@@ -204,4 +206,4 @@ def _what_changed(planned, found, obstacles):
         return ["the part has changed"]
     if len(planned) != len(found) or not same(planned[:size * (1 + obstacles)], found[:size * (1 + obstacles)]):
         return ["a body to avoid was moved or changed"]
-    return ["the part was turned, and the limits of the axis were not"]
+    return ["the part was moved or turned, and the limits of the axis or the held side were not"]

@@ -1,5 +1,7 @@
 """Strategies as the add-on offers them: the library's with their texts translated, and its check of a job's inputs."""
 
+from math import radians
+
 import FreeCAD
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 
@@ -41,13 +43,14 @@ def check_strategy(inputs):
 
     tool = machine = None
     if inputs.strategy != INDEXED or inputs.method != SPHERE:  # else neither matters, and they take time to read
-        tool = inputs.assembled()
+        tool = inputs.tools()[0]
         machine = mounting(inputs.limits, tool).machine if inputs.limits.startswith(PREFIX) else None
     held = next((piece for piece in inputs.pieces if piece.locked or piece.feed), None)
     library.check_strategy(inputs.strategy, Asked(
         tool, machine, inputs.method, inputs.objective, _roughness_of(inputs), inputs.orientations,
         "" if held is None else f"axis or feed of {held.name}{held.suffix} are locked",
-        "choose a machine among the limits of the tool axis", inputs.passes))
+        "choose a machine among the limits of the tool axis", inputs.passes, radians(inputs.least_lean),
+        inputs.greatest_step_over, inputs.lead))
 
 
 def _roughness_of(inputs):

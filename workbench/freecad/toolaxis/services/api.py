@@ -36,9 +36,9 @@ def task(inputs):
     InvalidInput
         When nothing is selected, a face is not there (any more), or a value is out of range.
     """
-    tool = inputs.assembled()
     inputs.check_counts()
-    inputs.job().check_tool(tool)
+    inputs.check_tools()
+    tools, job = inputs.tools(), inputs.job()
     source = ShapesRead.of(inputs)
     division = source.division(inputs)
 
@@ -46,17 +46,28 @@ def task(inputs):
         import toolaxis as ta
 
         part, bodies = source.read(progress)
-        faces = None if inputs.blades and source.complete(part) else source.numbers
-        made = ta.plan(part, tool, inputs.scallop, machine=limits_from(inputs.limits, tool), faces=faces,
+        rates = {} if inputs.rack else {"feedrate": inputs.feedrate, "spindle": inputs.spindle}
+        made = ta.plan(part, tools, inputs.scallop, machine=limits_from(inputs.limits, tools[0]),
+                       faces=_faces_asked(inputs, source, part),
                        regions=inputs.regions, orientations=inputs.orientations, method=inputs.method,
                        compare=inputs.compare, division=division, objective=inputs.objective,
-                       tolerance=inputs.tolerance, allowance=inputs.allowance, direction=inputs.direction,
-                       passes=inputs.passes, obstacles=list(bodies) or None, feedrate=inputs.feedrate,
-                       spindle=inputs.spindle, datum=source.datum, progress=progress, **asked_of(inputs))
+                       tolerance=job.tolerance, allowance=inputs.allowance, direction=inputs.direction,
+                       passes=inputs.passes, obstacles=list(bodies) or None, datum=source.datum,
+                       most_tools=inputs.most_tools, stock=job.stock, greatest_step_over=job.greatest_step_over,
+                       allowance_on=dict(job.allowance_on), lead=job.lead, avoid=job.avoid, held=job.held,
+                       progress=progress, **rates, **asked_of(inputs))
         refuse_in_vain(made)
         return made
 
     return compute
+
+
+def _faces_asked(inputs, source, part):
+    """The faces as the library takes them: nothing for a whole part, of which a rack machines blades or skins."""
+    whole = source.complete(part)
+    if inputs.rack and whole and not inputs.blades:
+        return "skins"
+    return None if inputs.blades and whole else source.numbers
 
 
 def verification(operation):
@@ -82,13 +93,14 @@ def verification(operation):
     if not inputs.faces:
         raise InvalidInput(f"the part of '{operation.Label}' was deleted: select another face and plan it")
     standing, source, tool, count = OperationRecord.of(operation), ShapesRead.of(inputs), inputs.assembled(), threads()
+    job = inputs.job()
     operation.Proxy.judging = what_stands(operation)
 
     def compute(progress):
         import toolaxis as ta
 
-        part, bodies = source.read(progress)
-        return ta.verify(standing.plan(part, bodies, tool, inputs.job()), threads=count, progress=progress)
+        part, bodies = source.prepared(job, progress)
+        return ta.verify(standing.plan(part, bodies, tool, job), threads=count, progress=progress)
 
     return compute
 
@@ -106,8 +118,8 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
         mm
     progress : toolaxis.progress.Progress, optional
     **given
-        Further fields of `JobInputs`, `regions`, `orientations`, `method` and `strategy` among them; what is not given
-        comes from the part.
+        Further fields of `JobInputs`, `rack`, `regions`, `orientations`, `method` and `strategy` among them; what is
+        not given comes from the part.  With a `rack`, such as "general-rack", no `tool` is needed.
 
     Returns
     -------
@@ -206,7 +218,7 @@ def split(operation, line=None, parameter="", at=None, progress=None):
 
 
 def planned_with(operation):
-    """What is planned again for an operation: itself, or its whole plan where blades were planned together.
+    """What is planned again for an operation: itself, or its whole plan where blades or tools were planned together.
 
     Parameters
     ----------
@@ -214,7 +226,8 @@ def planned_with(operation):
         An operation or a whole plan.
     """
     above = None if is_plan(operation) else plan_of(operation)
-    return above if above is not None and above.BladesFound not in ("", "null") else operation
+    together = above is not None and (above.BladesFound not in ("", "null") or bool(above.Rack))
+    return above if together else operation
 
 
 def verify(operation, progress=None):

@@ -1,6 +1,8 @@
 """What scripts hand to the public functions, checked and brought into one form before anything else happens."""
 
+from difflib import get_close_matches
 from math import isfinite
+from pathlib import Path
 
 import FreeCAD
 from freecad.toolaxis.document.kinds import is_operation, is_plan
@@ -14,15 +16,17 @@ _ROUGHNESS = (_UNITS.Length, 1000.0, "a finite roughness in micrometres, such as
 _LENGTH = (_UNITS.Length, 1.0, "a finite length in mm, such as 0.02 or FreeCAD.Units.Quantity(\"0.02 mm\")")
 #: For each number its unit, what FreeCAD's own value of it is multiplied with, and how to give it.
 _NUMBERS = {"scallop": _LENGTH, "tolerance": _LENGTH, "allowance": _LENGTH, "stickout": _LENGTH,
-            "flute_length": _LENGTH, "roughness": _ROUGHNESS,
+            "flute_length": _LENGTH, "stock": _LENGTH, "greatest_step_over": _LENGTH, "lead": _LENGTH,
+            "roughness": _ROUGHNESS, "least_lean": (_UNITS.Angle, 1.0, "a finite angle in degrees, such as 15"),
             "feedrate": (_UNITS.Velocity, 60.0, "a finite number in mm/min, such as 1000"),
             "spindle": (_UNITS.Frequency, 60.0, "a finite number in rev/min, such as 10000")}
 _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction": "\"zigzag\"", "passes": "\"planes\"",
-          "method": "\"sphere\"", "strategy": f"\"{STRATEGIES[1]}\""}
-_COUNTS, _SWITCHES = ("regions", "orientations"), ("blades", "compare")
+          "method": "\"sphere\"", "strategy": f"\"{STRATEGIES[1]}\"", "allowance_on": "\"3,5-8=0.3\"",
+          "avoid_faces": "\"3,5-8\"", "held": "\"z<12.5\""}
+_COUNTS, _SWITCHES = ("regions", "orientations", "most_tools"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
-_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES)
+_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES, "rack")
 
 
 def _refusal(text):
@@ -204,7 +208,8 @@ def fields_of(document, given):
     found = {}
     for name, value in given.items():
         if name not in _NAMES:
-            raise _refusal(f"{name!r} is no argument of plan: use {', '.join(sorted(_NAMES))}")
+            meant = get_close_matches(name, _NAMES) or sorted(_NAMES)
+            raise _refusal(f"{name!r} is no argument of plan: use {', '.join(meant)}")
         if value is None and name not in _LISTS:
             continue
         if name in _NUMBERS:
@@ -217,6 +222,8 @@ def fields_of(document, given):
             found[name] = _count(name, value)
         elif name in _SWITCHES:
             found[name] = bool(value)
+        elif name == "rack":
+            found[name] = _rack(value)
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
@@ -264,8 +271,28 @@ def _outline(name, value):
 def _count(name, value):
     from toolaxis.partition.partition import check_count
 
+    if name == "most_tools":
+        return _most_tools(value)
     check_count(value, "orientations" if name == "orientations" else "sub-surfaces")
     return value
+
+
+def _most_tools(value):
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise _refusal(f"most_tools is {_value_text(value)}: it must be a whole number above zero")
+    return value
+
+
+def _rack(value):
+    """Sources of tools from one, or a list of these."""
+    items = value if isinstance(value, list | tuple) else [value]
+    wrong = next((item for item in items if not isinstance(item, str | Path)), None)
+    if wrong is not None:
+        raise _refusal(f"rack is {_value_text(wrong)}: give a tool library, a folder or a tool, such as "
+                       "\"general-rack\", or a list of these")
+    if not items:
+        raise _refusal("the rack is empty: name at least one tool, library or folder")
+    return tuple(map(str, items))
 
 
 def _text(name, value):

@@ -2,10 +2,12 @@
 
 import json
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.inputs import inputs_of
+from freecad.toolaxis.document.kinds import operations_in, plan_of
 from freecad.toolaxis.document.machine import angles_kept, nearest
 from freecad.toolaxis.document.machine_angles import in_order
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
@@ -15,13 +17,13 @@ from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.services.arguments import operation_of, progress_of
 
 #: What operations of one folder have in common, and how it is called in messages.
-_SHARED = {"tool": "tools", "stickout": "stick-outs", "flute_length": "flute lengths",
-           "shank": "shanks", "holder": "holders",
-           "scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
+_SHARED = {"scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
            "limits": "limits of the axis",
            "strategy": "strategies", "roughness": "roughness limits", "objective": "objectives",
-           "direction": "directions", "passes": "kinds of passes", "feedrate": "feed rates",
-           "spindle": "spindle speeds"}
+           "direction": "directions", "passes": "kinds of passes", "stock": "heights of stock",
+           "least_lean": "least leans", "greatest_step_over": "greatest step-overs",
+           "allowance_on": "allowances on faces", "lead": "radii of lead-in and lead-out",
+           "avoid_faces": "faces to avoid", "held": "held sides"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}
 
 
@@ -121,29 +123,115 @@ def plan_task(operations):
     together = _together(operations, inputs)
     source, rows = ShapesRead.of(together), []
     offsets = _offsets(together)
-    for operation, one in zip(operations, inputs, strict=True):
-        standing = OperationRecord.of(operation) if operation.Motions else None
-        details = json.loads(operation.Details)
+    tools, places = _tools_of(inputs)
+    for operation, one, place in zip(operations, inputs, places, strict=True):
+        standing = OperationRecord.of(operation) if operation.Motions else _unplanned_record(operation)
         before = offsets[one.faces[0][0].Name]
-        rows.append((standing, operation.AxisMap, _number_details(details, before), angles_kept(operation)))
-        for link in turned_copies(operation) if standing is not None else ():
+        first = replace(standing, details=_number_details(standing.details, before))
+        rows.append(_PlannedRow(first, tools[place], angles_kept(operation), json.loads(operation.Details)))
+        for link in turned_copies(operation) if standing.path is not None else ():
             copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
-            rows.append((copy, operation.AxisMap, _number_details(copy.details, before), ()))
-    tool, job = together.assembled(), together.job()
+            copy = replace(copy, details=_number_details(copy.details, before))
+            rows.append(_PlannedRow(copy, tools[place], (), {}))
+    job, aside = together.job(), _areas_in_no_operation(operations)
 
     def compute(progress):
-        from toolaxis.plan.plan import Plan, outcome_of
+        from toolaxis.plan.plan import Plan
 
-        part, bodies = source.read(progress)
+        part, bodies = source.prepared(job, progress)
         for row in rows:
-            part = OperationRecord(None, None, None, row[2]).joined(part)
-        made = [_operation(k, part, tool, row[:3]) for k, row in enumerate(rows, 1)]
-        mounted = mounting(together.limits, tool) if together.limits.startswith(PREFIX) else None
+            part = row.standing.joined(part)
+        if job.stock > 0:
+            part = part.with_stock(job.stock, {face for row in rows for face in row.standing.stock_faces(part)})
+        made = [row.standing.operation(k, part, row.tool) for k, row in enumerate(rows, 1)]
+        made = _with_rests(made, rows)
+        mounted = mounting(together.limits, tools[0]) if together.limits.startswith(PREFIX) else None
         if mounted is not None:
-            made = _operations_with_angles(made, mounted, [row[3] for row in rows])
-        return Plan(part, (tool,), job, tuple(made), bodies, _datum(made, source), outcome_of(made), machine=mounted)
+            made = _operations_with_angles(made, mounted, [row.angles for row in rows])
+        return Plan(part, tools, job, tuple(made), bodies, _datum(made, source), _outcome(made, tools, aside),
+                    machine=mounted, **aside)
 
     return compute
+
+
+@dataclass(frozen=True)
+class _PlannedRow:
+    """What stands in a document of one operation, or of its turned copy.
+
+    standing : OperationRecord, its faces counted through all parts;  tool : toolaxis.tools.tool.Tool;  angles : rotary
+    angles that the document tells;  kept : dict, details as the document has them, empty for a copy.
+    """
+
+    standing: OperationRecord
+    tool: object
+    angles: tuple
+    kept: dict
+
+
+def _tools_of(inputs):
+    """The different tools of some operations in their order, and the place of each operation's among them.
+
+    Several tools have their own rates and a place in the magazine each: those without one, or with one that another
+    tool has, get free ones.
+    """
+    known, places = [], []
+    for one in inputs:
+        tool = replace(one.assembled(), feedrate=one.feedrate, spindle=one.spindle)
+        if tool not in known:
+            known.append(tool)
+        places.append(known.index(tool))
+    if len(known) == 1:
+        return (inputs[0].assembled(),), places
+    used, numbers = set(), []
+    for tool in known:
+        numbers.append(tool.number if tool.number not in used else 0)
+        used.add(tool.number)
+    free = (number for number in count(1) if number not in used)
+    return tuple(replace(tool, number=number or next(free))
+                 for tool, number in zip(known, numbers, strict=True)), places
+
+
+def _unplanned_record(operation):
+    """An operation that has no passes, as its document has it."""
+    from toolaxis.plan.document import orientation_from
+
+    return OperationRecord(None, None, orientation_from(json.loads(operation.AxisMap)), json.loads(operation.Details))
+
+
+def _with_rests(made, rows):
+    """Operations that tell which of them left what they machine: where all of these are written too."""
+    places = {row.kept["number"]: k for k, row in enumerate(rows, 1) if "number" in row.kept}
+    found = []
+    for op, row in zip(made, rows, strict=True):
+        wanted = row.kept.get("rest_of", ())
+        together = all(number in places for number in wanted)
+        found.append(replace(op, rest_of=tuple(sorted(places[number] for number in wanted)) if together else ()))
+    return found
+
+
+def _areas_in_no_operation(operations):
+    """What of the faces is in no operation, as a plan's fields; nothing unless all of one whole plan is written."""
+    from toolaxis.plan.held_face import HeldFace
+    from toolaxis.plan.unplanned_area import UnplannedArea
+
+    above = plan_of(operations[0])
+    whole = above is not None and {one.Name for one in operations_in(above)} == {one.Name for one in operations}
+    if not whole or not above.InNoOperation:
+        return {}
+    words = json.loads(above.InNoOperation)
+    return {"unplanned": tuple(UnplannedArea(**{**one, "point": tuple(one["point"])}) for one in words["unplanned"]),
+            "held": tuple(HeldFace(**one) for one in words["held"])}
+
+
+def _outcome(made, tools, aside):
+    """What operations that stand in a document come to."""
+    from toolaxis.job.planning.rack import outcome_of_rack
+    from toolaxis.plan.plan import outcome_of
+    from toolaxis.plan.unplanned_area import HIDDEN
+
+    if any(one.why != HIDDEN for one in aside.get("unplanned", ())):
+        return "cancelled"
+    return outcome_of_rack(made) if len(tools) > 1 else outcome_of(made)
 
 
 def _inputs(operation):
@@ -190,21 +278,8 @@ def _number_details(details, before):
     own = str(details["face"])
     suffix = details["label"].removeprefix(own) if details["label"].startswith(own) else ""
     number = details["face"] + before
-    members = [member + before for member in details.get("members", ())]
-    return details | {"face": number, "label": f"{number}{suffix}", "members": members}
-
-
-def _operation(number, part, tool, row):
-    """An operation of the library from what stands in the document."""
-    from toolaxis.plan.document import orientation_from
-    from toolaxis.plan.operation import Operation
-
-    standing, axis_map, details = row
-    if standing is None:
-        lost = OperationRecord(None, None, None, details)
-        return Operation(number, lost.face(part), tool, orientation_from(json.loads(axis_map)))
-    standing = replace(standing, details=details)
-    return Operation(number, standing.face(part), tool, standing.orientation, standing.path, standing.frame)
+    rows = {name: [member + before for member in details.get(name, ())] for name in ("members", "stock_faces")}
+    return details | rows | {"face": number, "label": f"{number}{suffix}"}
 
 
 def _operations_with_angles(made, mounted, angles):

@@ -11,7 +11,9 @@ _DOCUMENT = "FreeCAD.ActiveDocument"
 _HELD = {"tool": "Tool", "stickout": "StickOut", "flute_length": "FluteLength", "scallop": "Scallop",
          "tolerance": "Tolerance", "allowance": "Allowance", "limits": "Limits", "objective": "Objective",
          "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy",
-         "roughness": "Roughness", "passes": "CutPattern"}
+         "roughness": "Roughness", "passes": "CutPattern", "stock": "Stock", "least_lean": "LeastLean",
+         "greatest_step_over": "GreatestStepOver", "allowance_on": "AllowanceOn", "lead": "Lead",
+         "avoid_faces": "AvoidFaces", "held": "Held"}
 
 
 def record(*lines):
@@ -67,15 +69,22 @@ def plan_line(inputs):
     usual = JobInputs()
     faces = [f"{thing.Name}.{name}" for thing, name in inputs.faces]
     given = {name: getattr(inputs, name) for name in ("scallop", "stickout", "feedrate", "spindle")}
-    given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
+    if inputs.rack:
+        given = {"scallop": inputs.scallop, "rack": list(inputs.rack), "feedrate": inputs.feedrate,
+                 "spindle": inputs.spindle}
+    else:
+        given |= {name: list(map(list, getattr(inputs, name))) for name in ("shank", "holder")}
     given |= {name: getattr(inputs, name) for name in ("flute_length", "allowance", "limits", "objective", "direction",
                                                        "regions", "orientations", "method", "blades", "compare",
-                                                       "strategy", "roughness", "tolerance", "passes")
+                                                       "strategy", "roughness", "tolerance", "passes", "most_tools",
+                                                       "stock", "least_lean", "greatest_step_over", "allowance_on",
+                                                       "lead", "avoid_faces", "held")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]
     words = ", ".join(f"{name}={value!r}" for name, value in given.items())
-    return f"freecad.toolaxis.plan({_DOCUMENT}, {faces!r}, {inputs.tool!r}, {words})"
+    tool = "" if inputs.rack else f"{inputs.tool!r}, "
+    return f"freecad.toolaxis.plan({_DOCUMENT}, {faces!r}, {tool}{words})"
 
 
 def again_lines(operation, before, inputs):
@@ -90,6 +99,10 @@ def again_lines(operation, before, inputs):
     thing = thing_of(operation)
     lines = [f"{thing}.{held} = {getattr(inputs, name)!r}" for name, held in _HELD.items()
              if getattr(inputs, name) != getattr(before, name)]
+    if inputs.rack != before.rack:
+        lines.append(f"{thing}.Rack = {list(inputs.rack)!r}")
+    if inputs.most_tools != before.most_tools:
+        lines.append(f"{thing}.MostTools = {inputs.most_tools or 0!r}")
     if inputs.feedrate != before.feedrate:
         lines.append(f"{thing}.FeedRate = {inputs.feedrate / 60!r}")
     return [*lines, f"freecad.toolaxis.recompute({thing})"]

@@ -53,7 +53,7 @@ class TimeLeft:
 
 
 def clock(seconds):
-    """A time as minutes and seconds.
+    """A time as hours, minutes and seconds.
 
     Parameters
     ----------
@@ -62,4 +62,6 @@ def clock(seconds):
     whole = round(seconds)
     if whole < 60:
         return translate("ToolAxis", "{} s").format(whole)
+    if whole >= 3600:
+        return translate("ToolAxis", "{} h").format(f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}")
     return translate("ToolAxis", "{} min").format(f"{whole // 60}:{whole % 60:02d}")

@@ -15,9 +15,10 @@ from freecad.toolaxis.document.passes import commands, fill_passes, keep_axes
 from freecad.toolaxis.document.placement import chain_of, placement_from
 from freecad.toolaxis.document.plan_group import WholePlan, keep_figures, keep_plan
 from freecad.toolaxis.document.properties import assign
-from freecad.toolaxis.document.read_shapes import numbered
+from freecad.toolaxis.document.read_shapes import every_face, numbered
 from freecad.toolaxis.document.staleness import digest, signature
 from freecad.toolaxis.document.sub_surface_shape import is_shown, show_surface, surface_colour
+from freecad.toolaxis.document.tool_colours import colour_passes, pale_tool_colour, tool_colour
 from freecad.toolaxis.document.tool_on_path import ToolOnPasses, tool_shape
 from freecad.toolaxis.document.transaction import one_step, remove
 from freecad.toolaxis.document.verdict_maps import keep
@@ -66,7 +67,7 @@ def apply(document, inputs, plan, replaces=None):
                 continue
             operation = standing.pop(_key(op, owner), None) or _add_object(document, tree.place_of(op))
             made.append(operation)
-            _fill(operation, _alone(inputs, owner), plan, (op, owner[2], colours.get(op.number)))
+            _fill(operation, _alone(inputs, owner, op), plan, (op, owner[2], colours.get(op.number)))
             _lock(operation, inputs, _key(op, owner))
             keep_angles(operation, plan, op)
         tree.finish(made, chain_of(owners[0][0]), list(standing.values()))
@@ -92,18 +93,19 @@ def owners_of(inputs, plan):
 
     shapes = [shape_of(thing) for thing in inputs.things]
     whole = plan.part.original or plan.part  # as it was before faces around a blade were joined
-    if sum(len(shape.Faces) for shape in shapes) != len(whole.faces):
+    if sum(len(shape.Faces) for shape in shapes) != len(whole.faces) + len(whole.left_out):
         raise InvalidInput("the part has changed while it was planned: compute again")
-    found = numbered(inputs, shapes)
+    found = every_face(inputs.things, shapes) | numbered(inputs, shapes)
     return [found[op.face.number] for op in plan.operations]
 
 
-def _alone(inputs, owner):
-    """The inputs for one sub-surface: the other parts of the job become bodies to avoid."""
+def _alone(inputs, owner, op):
+    """The inputs for one sub-surface, with its own tool: the other parts of the job become bodies to avoid."""
     thing, name, _ = owner
     others = tuple(one for one in inputs.things if one.Name != thing.Name)
     known = {one.Name for one in inputs.obstacles}
-    return replace(inputs, faces=((thing, name),), regions=None, orientations=None, compare=False, pieces=(),
+    own = inputs.with_tool(op.tool) if inputs.rack else inputs
+    return replace(own, faces=((thing, name),), regions=None, orientations=None, compare=False, pieces=(),
                    obstacles=(*inputs.obstacles, *(one for one in others if one.Name not in known)))
 
 
@@ -128,7 +130,7 @@ def _place_for(document, inputs, plan, replaces):
         first = plan.operations[0]
         above = [thing for thing in replaces.InList if thing.hasExtension("App::GroupExtension")]
         return (above[0] if above else _new_group(document)), {_key(first, owners_of(inputs, plan)[0]): replaces}
-    if len(plan.operations) > 1 or inputs.divides:
+    if len(plan.operations) > 1 or inputs.divides or inputs.rack:
         return _new_plan(document), {}
     return _new_group(document), {}
 
@@ -155,9 +157,14 @@ def _new_plan(document):
 
 
 def _colours(plan, standing):
-    """Colours of sub-surfaces by number, where there are several; one that is planned again alone keeps its own."""
+    """Colours of sub-surfaces by number, where there are several; one that is planned again alone keeps its own.
+
+    With several tools they tell the tool.
+    """
     from toolaxis.report.figures.map_colouring import colours_of
 
+    if len(plan.tools) > 1:
+        return {op.number: pale_tool_colour(plan.tools.index(op.tool)) for op in plan.operations if op.done}
     if len(plan.operations) > 1:
         return colours_of(plan)
     kept = next((surface_colour(one) for one in standing.values()), None)
@@ -177,7 +184,9 @@ def _fill(operation, inputs, plan, which):
     op, number, colour = which
     thing, name = inputs.faces[0]
     label = op.face.label[len(str(op.face.number)):] if op.face.label.startswith(str(op.face.number)) else ""
-    title = f"{thing.Label} {name.rsplit('.', 1)[-1]}{label}"
+    title = f"{thing.Label} {name.rsplit('.', 1)[-1]}{_short_suffix(op.face, plan.part)}"
+    if len(plan.tools) > 1:
+        title += f", T{op.tool.number}"
     operation.Label = title
     set_inputs(operation, inputs)
     set_results(operation, op.orientation, plan.not_checked)
@@ -187,6 +196,8 @@ def _fill(operation, inputs, plan, which):
     if op.done:
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
         passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
+        if len(plan.tools) > 1:
+            colour_passes(passes, tool_colour(plan.tools.index(op.tool)))
         show_axes(operation, passes, op.face.diagonal, title)
         _standing_tool(operation, op, title, len(plan.operations) == 1)
     else:
@@ -198,35 +209,37 @@ def _fill(operation, inputs, plan, which):
 
 
 def _keep(operation, inputs, which, names):
-    from toolaxis.plan.document import orientation_document
+    from toolaxis.plan.document import orientation_document, region_of, zone_documents
 
     (op, plan), (number, label) = which, names
-    members = [own - op.face.number + number for own in op.face.numbers] if op.face.members else []
+    before = op.face.number - number
+    kept = {"members": [own - before for own in op.face.numbers] if op.face.members else [],
+            "zones": zone_documents(op.zones), "unreachable": op.unreachable, "rest_of": list(op.rest_of),
+            "number": op.number, "stock_faces": _stock_faces(operation, plan, before)}
     operation.AxisMap = json.dumps(orientation_document(op.orientation))
-    operation.Details = json.dumps({"face": number, "label": label, "region": region_of(op, plan),
-                                    "about": facts_of(*inputs.faces[0]), **({"members": members} if members else {})})
+    operation.Details = json.dumps({"face": number, "label": label, "region": region_of(op.face, plan.part),
+                                    "about": facts_of(*inputs.faces[0]),
+                                    **{name: value for name, value in kept.items() if value}})
     operation.PlannedWith = digest(inputs)
-    operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, bool(inputs.limits))
+    operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, inputs.placed)
     operation.Motions = [] if op.path is None else [int(kind) for kind in op.path.kind]
     operation.Starts = [] if op.path is None else [int(start) for start in op.path.breaks]
 
 
-def region_of(op, plan):
-    """Trim loops of a sub-surface that is not a whole face or a whole piece of one between kinks; else None.
+def _stock_faces(operation, plan, before):
+    """The faces of an operation's part that have stock, by their numbers there; `before` faces of others come first."""
+    from toolaxis.cad.freecad.documents import shape_of
 
-    Parameters
-    ----------
-    op : toolaxis.plan.operation.Operation
-    plan : toolaxis.plan.plan.Plan
-    """
-    import numpy as np
+    stock = plan.part.stock
+    count = len(shape_of(operation.Faces[0][0]).Faces)
+    return [] if stock is None else sorted(n - before for n in stock.faces if 0 < n - before <= count)
 
-    from toolaxis.shape.kinks import split_at_kinks
 
-    whole = plan.part.face(op.face.number)
-    whole = next((piece for piece in split_at_kinks(whole) if piece.label == op.face.label), whole)
-    same = len(whole.trims) == len(op.face.trims) and all(map(np.array_equal, whole.trims, op.face.trims))
-    return None if same else [loop.tolist() for loop in op.face.trims]
+def _short_suffix(face, part):
+    """What follows the number of a face in the name of a sub-surface: faces joined to it are counted, "+12more.2a"."""
+    if len(face.numbers) < 3:
+        return face.label.removeprefix(str(face.number))
+    return f"+{len(face.numbers) - 1}more{face.label.removeprefix(part.face(face.number).label)}"
 
 
 def _standing_frame(operation, op, where, title):

@@ -9,6 +9,7 @@ from freecad.toolaxis.document.inputs import JobInputs, flute_of
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
+from freecad.toolaxis.gui.plan.rack_choice import RackChoice
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from freecad.toolaxis.services.background import sentence
@@ -24,6 +25,9 @@ KINDS = tuple(cutters())
 _FIELDS = {"diameter": "diameter", "corner_radius": "corner", "half_angle_deg": "taper"}
 OBJECTIVES = ("length", "passes")
 METHODS = ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")
+#: Fields of the tab Advanced, and what they hold.
+_ASKED = {"stock": "stock", "greatestStepOver": "greatest_step_over", "lead": "lead", "leastLean": "least_lean"}
+_LINES = {"allowanceOn": "allowance_on", "avoidFaces": "avoid_faces", "held": "held"}
 _NONE, _AUTO, _NUMBER = range(3)
 _NO_LIMITS, _CONE, _ROTARY = range(3)
 
@@ -47,6 +51,11 @@ class PlanForm:
         self.quantities |= {name: QuantityField(self._find(name), "deg", (0, 4)) for name in angles}
         self.quantities |= {name: QuantityField(self._find(name), decimals=(2, 5), step=0.005)
                             for name in ("scallop", "tolerance", "allowance")}
+        self.quantities |= {name: QuantityField(self._find(name), decimals=(2, 4), step=0.1)
+                            for name in ("stock", "greatestStepOver", "lead")}
+        self.quantities["leastLean"] = QuantityField(self._find("leastLean"), "deg", (0, 4))
+        self.lines = {field: self._find(field, QtWidgets.QLineEdit) for field in _LINES}
+        self.racks = RackChoice(form)
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.kind.addItems([translate("ToolAxisPlan", one.title) for one in cutters().values()])
@@ -59,7 +68,8 @@ class PlanForm:
         self.strategy.addItems(titles())
         self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
-        self.unshown = ""
+        self.unshown, self.given = "", ("", 0, "")
+        self.racks.on_change(self._show_what_counts)
         for combo, _ in self.counts.values():
             combo.currentIndexChanged.connect(self._show_what_counts)
         self.kind.currentIndexChanged.connect(self._show_what_counts)
@@ -89,6 +99,9 @@ class PlanForm:
             box.toggled.connect(lambda _: slot())
         for spin in (*self.middle, self.spindle, self.roughness, *(spin for _, spin in self.counts.values())):
             spin.valueChanged.connect(lambda _: slot())
+        for line in self.lines.values():
+            line.textChanged.connect(lambda _: slot())
+        self.racks.on_change(slot)
         self.avoid.widget.itemChanged.connect(lambda _: slot())
         self.faces.on_change(slot)
 
@@ -102,16 +115,23 @@ class PlanForm:
         for combo, spin in self.counts.values():
             spin.setVisible(combo.currentIndex() == _NUMBER)
         self._find("strategyNote").setText(needs(self.strategy_name))
-        for name in ("method", "passes", "orientations", "orientationsNumber", "blades"):
+        several = bool(self.racks.chosen)
+        for name in ("method", "passes", "blades"):
             self._find(name).setEnabled(self.strategy_name == INDEXED)
+        for name in ("orientations", "orientationsNumber"):
+            self._find(name).setEnabled(self.strategy_name == INDEXED and not several)
+        for name in ("strategy", "regions", "regionsNumber", "compare"):
+            self._find(name).setEnabled(not several)
+        for name in ("toolGroup", "holderGroup", "shankGroup"):
+            self._find(name).setVisible(not several)
         for name, visible in shown.items():
             for member in (*members.get(name, (name,)), f"{name}Label"):
                 self._find(member).setVisible(visible)
 
     @property
     def strategy_name(self):
-        """The strategy that is chosen, by its name in `STRATEGIES`."""
-        return STRATEGIES[max(self.strategy.currentIndex(), 0)]
+        """The strategy that is chosen, by its name in `STRATEGIES`; a rack is planned with fixed axes."""
+        return INDEXED if self.racks.chosen else STRATEGIES[max(self.strategy.currentIndex(), 0)]
 
     def set_tool(self, text):
         """Show the sizes of a cutter.
@@ -227,7 +247,7 @@ class PlanForm:
             "regions" or "orientations".
         """
         combo, spin = self.counts[name]
-        if name == "orientations" and self.strategy_name != INDEXED:
+        if self.racks.chosen or (name == "orientations" and self.strategy_name != INDEXED):
             return None
         return {_NONE: None, _AUTO: "auto"}.get(combo.currentIndex(), spin.value())
 
@@ -270,6 +290,12 @@ class PlanForm:
             self.set_count(name, getattr(inputs, name))
         for name, box in self.switches.items():
             box.setChecked(getattr(inputs, name))
+        for field, name in _ASKED.items():
+            self.quantities[field].value = getattr(inputs, name)
+        for field, name in _LINES.items():
+            self.lines[field].setText(getattr(inputs, name))
+        self.racks.choose(inputs.rack, inputs.most_tools)
+        self.given = self.tool_text, inputs.tool_number, inputs.tool_title
         self.set_limits(inputs.limits)
 
     def read(self):
@@ -280,8 +306,15 @@ class PlanForm:
         ValueError
             With a sentence, where a cell of a table is no length.
         """
-        return {"faces": self.faces.faces, "tool": self.tool_text, "shank": self.shank.rows,
-                "holder": self.holder.rows, "stickout": self.quantities["stickout"].value,
+        rack = self.racks.chosen
+        tool, number, title = self.given
+        if rack or tool != self.tool_text:  # another cutter has another name
+            number, title = 0, ""
+        return {"faces": self.faces.faces, "tool": self.tool_text, "shank": () if rack else self.shank.rows,
+                "holder": () if rack else self.holder.rows, "stickout": self.quantities["stickout"].value,
+                "rack": rack, "most_tools": self.racks.most, "tool_number": number, "tool_title": title,
+                **{name: self.quantities[field].value for field, name in _ASKED.items()},
+                **{name: self.lines[field].text().strip() for field, name in _LINES.items()},
                 "flute_length": self.quantities["fluteLength"].value,
                 **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
@@ -294,7 +327,8 @@ class PlanForm:
                 if self.strategy_name == INDEXED else METHODS[0],
                 "strategy": self.strategy_name, "roughness": self.roughness.value(),
                 **{name: self.count(name) for name in self.counts},
-                **{name: box.isChecked() for name, box in self.switches.items()}}
+                **{name: box.isChecked() and not (rack and name == "compare")
+                   for name, box in self.switches.items()}}
 
     def refusal(self):
         """Why the fields cannot be computed with, one sentence; empty where they can."""
@@ -353,12 +387,12 @@ def check(values):
     from toolaxis.errors import InvalidInput
     from toolaxis.machine.limits import parse_limits
 
-    if values["stickout"] <= 0:
-        raise InvalidInput(f"stick-out is {values['stickout']:g} mm: it must be above zero")
-    inputs = JobInputs(**{**values, "faces": (), "obstacles": ()})
-    inputs.job().check_tool(inputs.assembled())
+    inputs = JobInputs(**{**values, "obstacles": ()})
+    if not inputs.rack and inputs.stickout <= 0:
+        raise InvalidInput(f"stick-out is {inputs.stickout:g} mm: it must be above zero")
+    inputs.check_tools()
     inputs.check_counts()
     if values["limits"].startswith(PREFIX):
-        mounting(values["limits"], inputs.assembled())
+        mounting(values["limits"], inputs.tools()[0])
     elif values["limits"]:
         parse_limits(values["limits"])

@@ -1,7 +1,7 @@
 """Which axes and feeds of a plan are locked, and the sub-surfaces that are kept for that."""
 
 from freecad.toolaxis.document.inputs import KeptSubSurface
-from freecad.toolaxis.services.write_results import owners_of, region_of
+from freecad.toolaxis.services.write_results import owners_of
 
 
 class AxisLocks:
@@ -38,6 +38,8 @@ class AxisLocks:
         every : bool
             Whether the borders of all faces are kept, also where nothing is locked.
         """
+        from toolaxis.plan.document import region_of
+
         held = self.axis | self.feed | self.drawn
         copies = {} if plan.blades is None else plan.blades.copies
         faces = {op.face.number for op in plan.operations if every or op.number in held}
@@ -47,7 +49,7 @@ class AxisLocks:
                 continue
             thing, name, _ = self.owners[op.number]
             locked = op.number in self.axis and op.done
-            region = region_of(op, plan) or ()
+            region = region_of(op.face, plan.part) or ()
             found.append(KeptSubSurface(thing, name, tuple(tuple(map(tuple, loop)) for loop in region),
                                         tuple(map(float, op.orientation.axis)) if locked else None,
                                         op.orientation.feed if op.number in self.feed and op.done else "", locked,

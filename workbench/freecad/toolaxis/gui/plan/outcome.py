@@ -1,7 +1,9 @@
 """How a plan that was just made turned out, in one sentence."""
 
 import FreeCAD
+from freecad.toolaxis.document.plan_account import account_of
 from freecad.toolaxis.document.strategies import strategy_of
+from freecad.toolaxis.gui.plan.account import headline
 
 translate = FreeCAD.Qt.translate
 
@@ -22,6 +24,10 @@ def outcome_sentence(plan):
     (str, bool)
     """
     count = len(plan.operations)
+    if not any(op.done for op in plan.operations) and plan.outcome == "cancelled":
+        return translate("ToolAxis", "Stopped before the first face had passes."), True
+    if len(plan.tools) > 1:
+        return _rack_sentence(plan)
     if plan.outcome == "cancelled":
         return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
             count), True
@@ -40,6 +46,16 @@ def outcome_sentence(plan):
                                                                             count - done - left), True
     return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(
         done, count), True
+
+
+def _rack_sentence(plan):
+    """What came of a plan with several tools, and whether it is bad."""
+    told = headline(account_of(plan))
+    if not any(op.done for op in plan.operations):
+        return translate("ToolAxis", "{} The reasons are on the tab Axis.").format(told), True
+    if plan.outcome == "cancelled":
+        return translate("ToolAxis", "Stopped. {} OK puts what is finished into the document.").format(told), True
+    return translate("ToolAxis", "{} OK puts the plan into the document.").format(told), plan.outcome != "complete"
 
 
 def touched_once(plan):

@@ -10,15 +10,17 @@ from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
+from freecad.toolaxis.document.plan_account import account_from
 from freecad.toolaxis.document.read_shapes import titles_of
 from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
+from freecad.toolaxis.gui.plan.account import headline
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.result_tab import AxisView
-from freecad.toolaxis.gui.plan.selection import selected_faces, tools_in
+from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
@@ -111,6 +113,9 @@ class PlanPanel(Panel):
         self.tools = tools_in(self.document)
         self.form.tool.addItem(translate("ToolAxis", "typed in below"))
         self.form.tool.addItems([name for name, _ in self.tools])
+        text = getattr(self.operation, "Account", "")
+        self.standing = account_from(text)
+        self.view.show_account(self.standing)
         self.given = inputs.pieces
         self.keeps = self.operation is not None and is_operation(self.operation) and bool(self.given)
         self.fields.offer_machines(offered(self.document))
@@ -124,6 +129,7 @@ class PlanPanel(Panel):
     def _connect(self):
         form = self.form
         self.fields.on_change(self._edited)
+        self.fields.racks.on_change(self._rack_chosen)
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
         form.faces.itemSelectionChanged.connect(self._point_out)
@@ -143,6 +149,11 @@ class PlanPanel(Panel):
         parts = [thing for thing, _ in self.fields.faces.faces]
         self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
         self._changed()
+
+    def _rack_chosen(self):
+        """A rack machines whole parts: where no face was chosen, all of the only body is."""
+        if self.fields.racks.chosen and not self.fields.faces.faces:
+            self.fields.faces.add(faces_of_only_body(self.document))
 
     def _point_out(self):
         """Select in the 3D view what is marked in the list."""
@@ -171,6 +182,9 @@ class PlanPanel(Panel):
         """Something in the fields is different: check it, and lock OK until it is computed again."""
         if self.work is None:
             self.computed = None
+        count = len(self.fields.faces.faces)
+        faces = translate("ToolAxis", "Faces") if not count else translate("ToolAxis", "Faces: {}").format(count)
+        self.form.facesGroup.setTitle(faces)
         self.refusal = self.fields.refusal()
         self._show_state()
 
@@ -179,7 +193,7 @@ class PlanPanel(Panel):
         form.compute.setEnabled(not computing and not self.refusal)
         form.stop.setEnabled(computing)
         form.progress.setVisible(computing)
-        for tab in (form.jobTab, form.toolTab, form.limitsTab, self.view.map, self.view.curve):
+        for tab in (form.jobTab, form.toolTab, form.limitsTab, form.advancedTab, self.view.map, self.view.curve):
             tab.setEnabled(not computing)
         if self.buttons is not None:
             with suppress(RuntimeError):
@@ -195,7 +209,8 @@ class PlanPanel(Panel):
             return self.refusal, bool(self.fields.faces.faces)
         plan = self.view.plan
         if plan is None:
-            return translate("ToolAxis", "Press Compute to find the axes."), False
+            told = translate("ToolAxis", "Press Compute to find the axes.")
+            return (told if self.standing is None else f"{headline(self.standing)} {told}"), False
         if self.computed is None:
             return translate("ToolAxis", "Something has changed: compute again."), True
         return outcome_sentence(plan)
@@ -215,7 +230,7 @@ class PlanPanel(Panel):
         if self.refusal or self.work is not None:
             self._show_state()
             return
-        self.problem, self.outrun = "", False
+        self.problem, self.outrun, self.standing = "", False, None
         inputs = JobInputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
@@ -227,7 +242,8 @@ class PlanPanel(Panel):
             return
         titles = titles_of(inputs)
         self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
-        self.work.interim.connect(lambda found: self._growing(*found, titles))
+        known = {} if inputs.rack else titles
+        self.work.interim.connect(lambda found: self._growing(*found, known))
         self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(self._not_computed)
@@ -269,7 +285,12 @@ class PlanPanel(Panel):
             self.compute()
 
     def _pieces(self):
-        """The sub-surfaces that are kept: those of the plan that is shown, else those that the panel began with."""
+        """The sub-surfaces that are kept: those of the plan that is shown, else those that the panel began with.
+
+        A rack is planned without any.
+        """
+        if self.fields.racks.chosen:
+            return ()
         if self.view.plan is not None and self.view.locks.owners:
             found = self.view.locks.pieces(self.view.plan, every=self.keeps)
         else:

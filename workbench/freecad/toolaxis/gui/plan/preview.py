@@ -8,6 +8,7 @@ import FreeCADGui
 import numpy as np
 from freecad.toolaxis.document.axis_lines import COLOUR, SHARE, ends_of
 from freecad.toolaxis.document.preferences import colours
+from freecad.toolaxis.document.tool_colours import tool_colour
 from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
 from PySide import QtCore
 
@@ -15,6 +16,8 @@ _COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder":
 _CLEAR = {"cutter": 0.0, "shank": 0.15, "holder": 0.35}
 _TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.35, 0.90)))
 _AROUND = 48
+#: Widths of the cuts of the operation that is shown, and of the others, pixels.
+_THICK, _THIN = 1.6, 1.0
 #: Time between the parts that are put into the view, ms: the first drawing of each is slow.
 _STEP = 20
 
@@ -34,23 +37,35 @@ class Preview:
         self.root = self.transform = None
         self.view = None
         self.stations = None
+        self._others, self._shown_plan = None, None
         self._left = []
         self._timer = QtCore.QTimer()
         self._timer.setInterval(_STEP)
         self._timer.timeout.connect(self._grow)
 
     def show(self, plan, op):
-        """Show an operation that has passes.
+        """Show an operation with its tool where it has passes, and thinner the passes of all others.
 
         Parameters
         ----------
         plan : toolaxis.plan.plan.Plan
         op : toolaxis.plan.operation.Operation
         """
-        self.clear()
+        if plan is not self._shown_plan:
+            self.clear()
+        self._clear_one()
         view = view_of(self.name)
         if view is None:
             return
+        self.view = view
+        if plan is not self._shown_plan:
+            self._show_others(plan, view)
+        if op.done:
+            self._show_one(plan, op, view)
+        self._timer.start()
+
+    def _show_one(self, plan, op, view):
+        """Show an operation with its tool."""
         root = coin.SoSeparator()
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
@@ -59,13 +74,24 @@ class Preview:
         self.transform = coin.SoTransform()
         tool.addChild(self.transform)
         root.addChild(tool)
-        self._left = [(root, lambda: _lines(op.path)), (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
+        self._left = [(root, lambda: _lines(op.path, _colour_of(plan, op))),
+                      (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
                       *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
-                      *((tool, partial(_revolved, *solid)) for solid in solids(op.tool))]
+                      *((tool, partial(_revolved, *solid)) for solid in solids(op.tool)), *self._left]
         self.stations = PreviewStations(op.path)
-        self.root, self.view = root, view
+        self.root = root
         view.getSceneGraph().addChild(root)
-        self._timer.start()
+
+    def _show_others(self, plan, view):
+        """Show the passes of all operations of a plan, as long as it is the one that is shown."""
+        self._shown_plan, self._others = plan, coin.SoSeparator()
+        style = coin.SoPickStyle()
+        style.style = coin.SoPickStyle.UNPICKABLE
+        self._others.addChild(style)
+        view.getSceneGraph().addChild(self._others)
+        done = [op for op in plan.operations if op.done]
+        if len(done) > 1:
+            self._left += [(self._others, partial(_cuts, op.path, _colour_of(plan, op), _THIN)) for op in done]
 
     def _grow(self):
         """Add one part; called until none is left."""
@@ -91,14 +117,23 @@ class Preview:
 
     def clear(self):
         """Take everything out of the view."""
+        for root in filter(None, (self.root, self._others)):
+            with suppress(Exception):  # the view may be gone already, and its scene with it
+                self.view.getSceneGraph().removeChild(root)
+        self.forget()
+
+    def _clear_one(self):
+        """Take out of the view what belongs to the operation that is shown."""
         if self.root is not None:
             with suppress(Exception):  # the view may be gone already, and its scene with it
                 self.view.getSceneGraph().removeChild(self.root)
-        self.forget()
+        self.root = self.transform = self.stations = None
+        self._left = [(above, make) for above, make in self._left if above is self._others]
 
     def forget(self):
         """Let go without touching the view."""
         self.root = self.transform = self.view = self.stations = None
+        self._others = self._shown_plan = None
         self._left = []
 
 
@@ -193,18 +228,36 @@ def _polylines(colour, lines, width):
     return node
 
 
-def _lines(path):
+def _colour_of(plan, op):
+    """The colour of an operation's cuts: that of its tool where there are several."""
+    return tool_colour(plan.tools.index(op.tool)) if len(plan.tools) > 1 else colours()[0]
+
+
+def _lines(path, colour):
     """The way of the tool's tip, in one colour where it cuts and in another between the passes."""
+    node = _cuts(path, colour, _THICK)
+    between = _runs(path, False)
+    if between:
+        node.addChild(_polylines(colours()[1], between, 1.0))
+    return node
+
+
+def _cuts(path, colour, width):
+    """The cuts of a path."""
+    node = coin.SoSeparator()
+    lines = _runs(path, True)
+    if lines:
+        node.addChild(_polylines(colour, lines, width))
+    return node
+
+
+def _runs(path, cutting):
+    """Polylines of a path where the tool cuts, or where it does not."""
     from toolaxis.cldata.toolpath import Motion
 
-    node = coin.SoSeparator()
     cut = np.asarray(path.kind[1:]) == Motion.CUT
     bounds = np.concatenate([[0], np.flatnonzero(np.diff(cut)) + 1, [len(cut)]])
-    for flag, colour, width in zip((True, False), colours(), (1.6, 1.0), strict=True):
-        lines = [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == flag]
-        if lines:
-            node.addChild(_polylines(colour, lines, width))
-    return node
+    return [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == cutting]
 
 
 def _axes(op):

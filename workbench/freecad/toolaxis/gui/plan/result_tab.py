@@ -2,9 +2,11 @@
 
 import FreeCAD
 import numpy as np
+from freecad.toolaxis.document.plan_account import account_of
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.result_rows import fill, fill_baselines, measures, sentences
 from freecad.toolaxis.gui.axis_map.widget import HemisphereMap, no_map
+from freecad.toolaxis.gui.plan.account import fill_tools, headline
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.orientation_curve import OrientationCurve
 from freecad.toolaxis.gui.plan.outcome import left_to_clean_up
@@ -72,6 +74,7 @@ class AxisView(QtCore.QObject):
         self.locks = AxisLocks()
         self.curve.show_options(())
         fill_baselines(self.form.baselines, ())
+        self.show_account(None)
         self._offer([], -1)
         self._show_operation()
 
@@ -90,12 +93,32 @@ class AxisView(QtCore.QObject):
         self.titles, self.locks = titles or {}, locks or AxisLocks()
         self.curve.show_options(plan.options)
         fill_baselines(self.form.baselines, plan.baselines)
+        self.show_account(account_of(plan) if len(plan.tools) > 1 else None)
         self.plan, self.found, self.pictures, self.growing = plan, plan, pictures, {}
         self.left = left_to_clean_up(plan)
         undone = [k for k, op in enumerate(plan.operations) if not op.done and op.number not in self.left]
         done = [k for k, op in enumerate(plan.operations) if op.done]
-        self._offer(self._titles(), (undone or done or [0])[0])
+        # With several tools some rest nearly always has no axis: what is machined is shown first.
+        first = done or undone if self._several else undone or done
+        self._offer(self._titles(), (first or [0])[0])
         self._show_operation()
+
+    def show_account(self, account):
+        """Show what several tools come to.
+
+        Parameters
+        ----------
+        account : freecad.toolaxis.document.plan_account.PlanAccount or None
+            Nothing is shown for None.
+        """
+        self.form.account.setText("" if account is None else headline(account))
+        self.form.account.setVisible(account is not None)
+        fill_tools(self.form.toolTable, account)
+
+    @property
+    def _several(self):
+        """Whether the plan has several tools: its axes are not changed by hand."""
+        return self.plan is not None and len(self.plan.tools) > 1
 
     def _offer(self, names, index):
         """Let the user choose from names."""
@@ -116,7 +139,7 @@ class AxisView(QtCore.QObject):
         face : toolaxis.shape.face.Face
             Which face it is of.
         titles : dict of int to str
-            What all the faces are called, by their numbers, in their order.
+            What all the faces are called, by their numbers, in their order; skins come to them one by one.
         """
         if not self.growing:
             self.clear()
@@ -125,9 +148,10 @@ class AxisView(QtCore.QObject):
         self.growing[face.number] = picture, title_of(face, titles)
         follows = shown in (None, self.computed)
         self.computed = face.number
-        texts = [title if self.growing[number] else translate("ToolAxis", "{}: not begun").format(title)
-                 for number, title in titles.items()]
-        self._offer(texts, list(titles).index(face.number if follows else shown))
+        texts = [grown[1] if grown and number not in titles else titles[number] if grown
+                 else translate("ToolAxis", "{}: not begun").format(titles[number])
+                 for number, grown in self.growing.items()]
+        self._offer(texts, list(self.growing).index(face.number if follows else shown))
         if self._grown == face.number:
             self._show_operation()
 
@@ -153,6 +177,8 @@ class AxisView(QtCore.QObject):
 
     def _title(self, op):
         title = title_of(op.face, self.titles)
+        if self._several and op.done:
+            title = f"{title}, T{op.tool.number}"
         if op.number in self.locks.axis | self.locks.feed:
             title = translate("ToolAxis", "{} (locked)").format(title)
         if self.plan.blades is not None and op.number in self.plan.blades.copies:
@@ -185,7 +211,7 @@ class AxisView(QtCore.QObject):
     def show_tool(self):
         """Show passes and tool of the tried axis, or of the plan's, in the 3D view."""
         op = self.tried or self.operation
-        if op is None or not op.done:
+        if op is None:
             self.preview.clear()
         else:
             self.preview.show(self.plan, op)
@@ -206,7 +232,7 @@ class AxisView(QtCore.QObject):
         for widget in (form.slide, form.slideLabel, form.pictures):
             widget.setVisible(op is not None)
         for widget in (form.lock, form.best, form.lockAxis, form.lockFeed, form.turnFeed):
-            widget.setVisible(op is not None and not moves)
+            widget.setVisible(op is not None and not moves and not self._several)
         for widget in (form.mapPlace, form.legendPlace, form.pointer):
             widget.setVisible(not moves)
         own = op is not None and op.done and not self._is_copy(op)
@@ -243,6 +269,8 @@ class AxisView(QtCore.QObject):
             return ""
         if self.operation.orientation.lead is not None:
             return translate("ToolAxis", "The axis moves along the passes: lines in the 3D view show it.")
+        if self._several:
+            return self.operation.tool.shop_name
         if self.tried is None:
             return translate("ToolAxis", "Click on the map to try an axis.") if self.map.picture is not None else ""
         found, best = self.tried.orientation, self._best(self.operation).orientation
@@ -266,7 +294,7 @@ class AxisView(QtCore.QObject):
         from toolaxis.job.planning.edit_axis import try_axis
 
         plan, op = self.plan, self.operation
-        if op is None or not self.map.isEnabled() or self._is_copy(op):
+        if op is None or not self.map.isEnabled() or self._is_copy(op) or self._several:
             return
         self.leave()
         self._asked = feed

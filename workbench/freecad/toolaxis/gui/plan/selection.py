@@ -5,6 +5,7 @@ import FreeCADGui
 from freecad.toolaxis.document.cam_probe import controllers
 from freecad.toolaxis.document.read_shapes import number_in, sculptured
 from freecad.toolaxis.services.messages import shown
+from freecad.toolaxis.services.obstacles import bodies_in
 
 translate = FreeCAD.Qt.translate
 
@@ -32,6 +33,24 @@ def selected_faces(document):
             except ToolAxisError as reason:
                 problems.append(shown(str(reason)))
     return list(dict.fromkeys(faces)), list(dict.fromkeys(problems))
+
+
+def faces_of_only_body(document):
+    """The sculptured faces of the body that a document has in sight; none where there are several, or it has none.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+    from toolaxis.errors import ToolAxisError
+
+    bodies = [thing for thing in bodies_in(document, []) if thing.Visibility]
+    if len(bodies) != 1:
+        return []
+    try:
+        return _faces(bodies[0], "")
+    except ToolAxisError:
+        return []
 
 
 def _faces(thing, name):

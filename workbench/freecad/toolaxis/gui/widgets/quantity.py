@@ -73,6 +73,19 @@ def length_text(value, least=2, most=3):
     return f"{number_text(float(value) / factor, least, most + more)} {unit}"
 
 
+def area_text(value):
+    """An area with its unit, of square mm or inches.
+
+    Parameters
+    ----------
+    value : float
+        mm^2
+    """
+    unit, factor = shown_unit("mm")
+    least = 0 if factor == 1.0 else 2
+    return f"{number_text(float(value) / factor**2, least, least)} {unit}²"
+
+
 def fine_text(value):
     """A length that may be thousandths of a millimetre, with four digits that count.
 

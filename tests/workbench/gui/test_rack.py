@@ -1,0 +1,192 @@
+"""A part planned with a rack from the panel: chosen, computed, put into the tree, written out, saved and reopened."""
+
+import importlib.util
+import json
+from pathlib import Path
+
+import pytest
+
+TREE = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="module")
+def whole_parts():
+    spec = importlib.util.spec_from_file_location("whole_parts", TREE / "whole_parts.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def grooved(desk, whole_parts):
+    """A block whose top has a groove that only the smaller tool of `whole_parts.RACK` reaches, and the name of the top.
+    """
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Grooved")
+    document.UndoMode = 1
+    thing, name = whole_parts.grooved(document)
+    view = desk.gui.getDocument(document.Name).ActiveView
+    view.viewIsometric()
+    view.fitAll()
+    return thing, name
+
+
+@pytest.fixture
+def rack_file(whole_parts, tmp_path):
+    path = tmp_path / "my-rack.toml"
+    path.write_text(whole_parts.RACK, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def form(desk, grooved, rack_file, monkeypatch):
+    """The panel with the rack, for the grooved face."""
+    form = desk.start(*grooved)
+    monkeypatch.setattr(desk.widgets.QFileDialog, "getOpenFileName", lambda *_: (str(rack_file), ""))
+    form.rack.setCurrentIndex(form.rack.findText("library file..."))
+    desk.pump(0.1)
+    desk.type(form.scallop, "0.1 mm")
+    return form
+
+
+def plan_in(document):
+    from freecad.toolaxis.document.kinds import is_plan
+
+    return next(filter(is_plan, document.Objects), None)
+
+
+def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
+    form = desk.start()
+    assert not form.faces.count() and not form.compute.isEnabled()
+    form.rack.setCurrentIndex(form.rack.findText("general rack"))
+    desk.pump(0.1)
+    assert form.facesGroup.title() == "Faces: 5" and form.faces.count() == 5 and form.compute.isEnabled()
+    assert form.rackTools.count() > 10
+    desk.shot("89-general-rack")
+
+
+def test_a_rack_is_chosen_without_typing_a_tool(desk, form):
+    assert form.rack.currentText() == "my-rack.toml" and form.facesGroup.title() == "Faces: 1"
+    assert form.mostTools.isVisible() and form.compute.isEnabled()
+    for name in ("strategy", "regions", "orientations", "compare"):
+        assert not getattr(form, name).isEnabled(), name
+    form.tabs.setCurrentWidget(form.toolTab)
+    assert form.rackTools.isVisible() and not form.diameter.isVisible() and not form.holder.isVisible()
+    assert [desk.text(form.rackTools, row) for row in range(form.rackTools.count())] == [
+        "T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
+    desk.shot("90-rack")
+    form.rack.setCurrentIndex(0)
+    assert form.diameter.isVisible() and not form.rackTools.isVisible() and form.strategy.isEnabled()
+
+
+def test_a_dialog_that_is_cancelled_and_a_rack_that_is_none(desk, form, monkeypatch, tmp_path):
+    monkeypatch.setattr(desk.widgets.QFileDialog, "getOpenFileName", lambda *_: ("", ""))
+    form.rack.setCurrentIndex(form.rack.findText("library file..."))
+    assert form.rack.currentText() == "my-rack.toml"
+    monkeypatch.setattr(desk.widgets.QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path / "empty"))
+    (tmp_path / "empty").mkdir()
+    form.rack.setCurrentIndex(form.rack.findText("folder of tools..."))
+    assert "is empty" in form.message.text() and not form.compute.isEnabled()
+    assert "is empty" in form.rackNote.text() and not form.rackTools.count()
+
+
+def test_fields_of_the_advanced_tab_are_asked_for(desk, form):
+    form.tabs.setCurrentWidget(form.advancedTab)
+    desk.type(form.stock, "0.3 mm")
+    desk.type(form.greatestStepOver, "0.05 mm")
+    assert "greatest step-over is 0.05 mm" in form.message.text() and not form.compute.isEnabled()
+    desk.type(form.greatestStepOver, "4")
+    desk.type(form.leastLean, "95")
+    assert "least lean" in form.message.text()
+    desk.type(form.leastLean, "3")
+    desk.type(form.lead, "1")
+    form.held.setText("below")
+    assert "below" in form.message.text() and not form.compute.isEnabled()
+    form.held.setText("z<0")
+    form.allowanceOn.setText("nonsense")
+    assert "nonsense" in form.message.text()
+    form.allowanceOn.setText("")
+    assert form.compute.isEnabled()
+    desk.shot("91-advanced")
+
+
+def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tmp_path):
+    import FreeCAD
+    from freecad.toolaxis.document.kinds import operations_in
+    from freecad.toolaxis.document.tool_colours import tool_colour
+    from freecad.toolaxis.gui.commands.export import Export
+
+    document = grooved[0].Document
+    before = sorted(thing.Name for thing in document.Objects)
+    desk.computed(form)
+    assert " machined" in form.message.text() and "with 2 of 2 tools" in form.message.text()
+    assert "OK puts the plan into the document" in form.message.text()
+    assert form.account.isVisible() and form.account.text() in form.message.text()
+    table = form.toolTable
+    assert [desk.text(table, row) for row in range(2)] == ["T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
+    assert not form.lock.isVisible() and not form.turnFeed.isVisible()
+    desk.shot("92-account")
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    plan = plan_in(document)
+    made = operations_in(plan)
+    done = [one for one in made if one.Motions]
+    assert {one.ToolNumber for one in done} == {1, 7} and all(f"T{one.ToolNumber}" in one.Label for one in done)
+    assert {one.ToolTitle for one in done} == {"Ball D20, 60 out", "Ball D6, 40 out"}
+    assert {one.StickOut.Value for one in done} == {60.0, 40.0} and all(one.Holder for one in done)
+    for one in done:
+        passes = next(thing for thing in one.Group if thing.isDerivedFrom("Path::Feature"))
+        place = [1, 7].index(one.ToolNumber)
+        assert tuple(passes.ViewObject.NormalColor)[:3] == pytest.approx(tool_colour(place), abs=0.01)
+    assert plan.Machined.Value > 0.9 * plan.FaceArea.Value and len(plan.ToolsUsed) == 2
+    desk.shot("93-tree")
+    document.undo()
+    desk.pump(0.2)
+    assert sorted(thing.Name for thing in document.Objects) == before, "one undo step takes all back"
+    document.redo()
+    document.saveAs(str(tmp_path / "Grooved.FCStd"))
+    FreeCAD.closeDocument(document.Name)
+    again = FreeCAD.openDocument(str(tmp_path / "Grooved.FCStd"))
+    desk.pump(0.3)
+    plan = plan_in(again)
+    assert not plan.Stale and not any(one.Stale for one in operations_in(plan))
+    plan.ViewObject.doubleClicked()
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+    form = desk.form("ToolAxisPlan")
+    assert "with 2 of 2 tools" in form.message.text() and form.toolTable.rowCount() == 4
+    assert form.rack.currentText() == "my-rack.toml"
+    desk.shot("94-reopened")
+    desk.press(desk.standard_button("Cancel"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    desk.gui.Selection.clearSelection()
+    Export().Activated()
+    desk.wait(lambda: desk.form("ToolAxisExport") is not None, "the panel opens")
+    out = desk.form("ToolAxisExport")
+    out.folder.setText(str(tmp_path / "out"))
+    out.dialect.setCurrentIndex(out.dialect.findData("linuxcnc") if out.dialect.findData("linuxcnc") > 0 else 1)
+    out.machine.setCurrentIndex(out.machine.findData("bc-table-table"))
+    desk.press(out.write)
+    desk.wait(lambda: out.write.isEnabled(), "the files are written")
+    assert (tmp_path / "out" / "plan.json").exists(), out.message.text()
+    words = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert [tool["number"] for tool in words["tools"]] == [1, 7]
+    assert words["part"]["machined"] == pytest.approx(plan.Machined.Value)
+    assert words["part"]["open"] == pytest.approx(plan.Open.Value, abs=1e-6)
+    program = next(path for path in (tmp_path / "out").iterdir() if path.name.startswith("program")).read_text()
+    assert "T1" in program and "T7" in program
+    desk.press(desk.standard_button("Close"))
+
+
+def test_stop_keeps_what_is_finished(desk, grooved, form):
+    desk.press(form.compute)
+    desk.wait(lambda: "D6" in form.message.text() or not form.stop.isEnabled(), "the smaller tool begins")
+    if form.stop.isEnabled():
+        desk.press(form.stop)
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    assert form.message.text().startswith("Stopped. ") and "not begun" in form.message.text()
+    assert "OK puts what is finished into the document" in form.message.text()
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    plan = plan_in(grooved[0].Document)
+    assert plan.Outcome == "cancelled" and plan.NotBegun.Value > 0 and plan.Machined.Value > 0

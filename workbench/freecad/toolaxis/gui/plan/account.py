@@ -1,0 +1,87 @@
+"""The account of a part that was planned with several tools, as a headline and as a table of the tools."""
+
+import FreeCAD
+from freecad.toolaxis.document.tool_colours import tool_colour
+from freecad.toolaxis.gui.widgets.quantity import area_text, number_text
+from freecad.toolaxis.gui.widgets.table_entries import fit_rows, put
+from freecad.toolaxis.services.time_left import clock
+from PySide import QtGui, QtWidgets
+
+translate = FreeCAD.Qt.translate
+
+#: Share below which a number is told as less than that, and area that counts as none, mm^2.
+_LEAST, _NONE = 0.01, 5e-3
+
+
+def percent(part, whole):
+    """A share in percent: never 100 where something is missing, and never 0 where there is something.
+
+    Parameters
+    ----------
+    part, whole : float
+    """
+    share = 100 * part / whole if whole > 0 else 0.0
+    if part > _NONE and share < _LEAST:
+        return f"< {number_text(_LEAST, 2, 2)} %"
+    if whole - part > _NONE and share > 100 - _LEAST:
+        return f"> {number_text(100 - _LEAST, 2, 2)} %"
+    near = 0 < share < 0.1 or 99.9 < share < 100
+    digits = 2 if near else 1
+    return f"{number_text(share, digits, digits)} %"
+
+
+def headline(account):
+    """How much of the faces is machined, and in what time, as sentences.
+
+    Parameters
+    ----------
+    account : freecad.toolaxis.document.plan_account.PlanAccount
+    """
+    rows = [(account.unreachable, translate("ToolAxis", "{} proven out of reach")),
+            (account.open, translate("ToolAxis", "{} open")),
+            (account.not_begun, translate("ToolAxis", "{} not begun"))]
+    rest = [form.format(percent(area, account.area)) for area, form in rows if area > _NONE]
+    told = translate("ToolAxis", "{} of {} machined").format(percent(account.machined, account.area),
+                                                             area_text(account.area))
+    text = ", ".join([told, *rest]) + "."
+    if not account.tools:
+        return text
+    used = translate("ToolAxis", "{} with {} of {} tools.").format(clock(account.seconds), len(account.tools),
+                                                                   account.offered)
+    return f"{text} {used}"
+
+
+def fill_tools(table, account):
+    """Show what each tool machines and its time; hidden without an account.
+
+    Parameters
+    ----------
+    table : QTableWidget
+    account : freecad.toolaxis.document.plan_account.PlanAccount or None
+    """
+    table.setVisible(account is not None and bool(account.tools))
+    if account is None:
+        table.setRowCount(0)
+        return
+    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Area"), translate("ToolAxis", "Time")]
+    table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
+    table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
+    table.setColumnCount(len(heads))
+    table.setHorizontalHeaderLabels(heads)
+    table.verticalHeader().setVisible(False)
+    rows = [(f"T{one.number} {one.name}", percent(one.area, account.area), clock(one.seconds))
+            for one in account.tools]
+    rows.append((translate("ToolAxis", "changes of tool and axis"), "", clock(account.between)))
+    rows.append((translate("ToolAxis", "total"), percent(account.machined, account.area), clock(account.seconds)))
+    table.setRowCount(len(rows))
+    for i, cells in enumerate(rows):
+        for k, text in enumerate(cells):
+            put(table, i, k, text, text)
+    for i, one in enumerate(account.tools):
+        told = translate("ToolAxis", "{}: {} operations").format(rows[i][0], one.operations)
+        put(table, i, 0, rows[i][0], told, DecorationRole=QtGui.QColor.fromRgbF(*tool_colour(one.place)))
+    head = table.horizontalHeader()
+    for k in range(1, len(heads)):
+        head.setSectionResizeMode(k, QtWidgets.QHeaderView.ResizeToContents)
+    head.setSectionResizeMode(0, QtWidgets.QHeaderView.Stretch)
+    fit_rows(table)
