@@ -146,7 +146,7 @@ def region_of(face: Face, part: Part) -> list[list[list[float]]] | None:
     """
     whole = _smooth_piece(part, face.number, face.label)
     same = len(whole.trims) == len(face.trims) and all(map(np.array_equal, whole.trims, face.trims))
-    return None if same else [_rows(loop) for loop in face.trims]
+    return None if same else [np.asarray(loop, dtype=float).tolist() for loop in face.trims]
 
 
 def sub_surface_from(part: Part, number: int, label: str, region: Sequence[ArrayLike] | None) -> Face:
