@@ -6,8 +6,10 @@ import pytest
 from toolaxis.cldata.toolpath import Motion
 from toolaxis.shape.analytic import CylindricalSurface
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
+from toolaxis.verify.convex_edges import _may_lie_within
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
@@ -107,3 +109,13 @@ def test_the_numbers_do_not_depend_on_where_the_part_stands():
     moved = cut_along_the_edge(np.array(tips) @ rigid[:3, :3].T + rigid[:3, 3], rigid[:3, :3] @ axis,
                                touching=(SIDE.transformed(rigid),), target=TOP.transformed(rigid))
     assert moved.gouge_max == pytest.approx(cut_along_the_edge(tips, axis).gouge_max, rel=1e-3)
+
+
+def test_places_near_a_face_are_all_asked_for():
+    tilted = plane([2, 1, -1], [3, 0, 4], [-1, 5, 0], "tilted")
+    places = np.random.default_rng(3).uniform([-2, -1, -3], [7, 8, 5], (20000, 3))
+    near = nearest(tilted, places).distance < 0.6
+    asked = _may_lie_within(0.6, tilted, places)
+    assert near.sum() > 20
+    assert (asked | ~near).all()
+    assert asked.sum() < 0.8 * (((places > tilted.box[0] - 0.6) & (places < tilted.box[1] + 0.6)).all(axis=1)).sum()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit, jit_inline
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.component_clearance_numpy import clear_numpy
@@ -17,7 +17,7 @@ from toolaxis.verify.linear_motions import Hierarchy, Tile, Tiles, floors, near_
 from toolaxis.verify.revolved_solids import reach_of
 from toolaxis.verify.sample_cells import SampleCells, ball_around, face_cells, merge_cells, share_cells, split
 from toolaxis.verify.spatial_blocks import Blocks, blocks_of, in_chunks
-from toolaxis.verify.swept_solid import LOOK, least_over_motion, moment
+from toolaxis.verify.swept_solid import LOOK, gradient, least_over_motion, moment, sway
 
 Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
@@ -33,8 +33,8 @@ TILE = 4_000
 #: Once cells are smaller than FINE, mm, only so many are split again, the closest first; most rounds.
 FINE, _BEAM, _ROUNDS = 0.5, 4_000, 12
 
-#: Distances above this are not measured, mm.
-FAR = 100.0
+#: Distances above this are not measured, mm; sums of distances and radii are rounded by less than that.
+FAR, _ROUNDING = 100.0, 1e-9
 
 #: More than this many times what is enough need only be known to this share of itself.
 AMPLE, AMPLE_SHARE = 5.0, 0.05
@@ -76,59 +76,104 @@ class ClearanceTables(NamedTuple):
     arrival: Index
 
 
+class _Tangent(NamedTuple):
+    """A plane below a component's function while it is carried along a motion.
+
+    low : float, mm, at the middle of a block of points, the least over the motion;
+    slope : (float, float, float), of the function over the part.
+    """
+
+    low: float
+    slope: tuple[float, float, float]
+
+
+@jit_inline
+def _tangent_at(body: Body, k: int, ball: Array) -> _Tangent:
+    """A plane below the function of one solid on motion k, for points in a ball (4,).
+
+    The solid's function f is convex and changes by no more than it is gone.  Where the tool is at share s, a point at
+    d from the ball's middle is in the tool's frame where the middle is, and d turned with the axis, which from the
+    middle of the motion on turns by no more than half its sway.  The middle itself runs along a chord but for a bow
+    that `LOOK` holds.  So at all s f is at least its value at the middle of ball and motion, less half the slope in s,
+    less `LOOK`, less half the sway times |d|, and more by its gradient times d.
+    """
+    solid, motion = body
+    start = motion[0]
+    w = (ball[0] - start[k, 0], ball[1] - start[k, 1], ball[2] - start[k, 2])
+    value, slope, g0, g1, g2 = gradient(solid, motion, (k, 0.5), w)
+    low = value - 0.5 * abs(slope) - LOOK
+    turn = motion[3]
+    if turn[k, 0] != 0.0 or turn[k, 1] != 0.0 or turn[k, 2] != 0.0:
+        low -= 0.5 * sway(motion, k) * ball[3]
+    return _Tangent(low, (g0, g1, g2))
+
+
+@jit_inline
+def _greatest(level: Array, low: int, high: int) -> float:
+    greatest = -np.inf
+    for i in range(low, high):
+        greatest = max(greatest, level[i])
+    return greatest
+
+
 @jit
 def _clear_block(body: Body, tables: ClearanceTables, block: tuple[Array, int, int], out: tuple[Array, Index, Array],
-                 limit: float) -> None:
-    """Distances of one block of points from all motions; those above the limit stay as they are."""
+                 level: Array) -> None:
+    """Distances of one block of points from all motions; those above their levels stay as they are.
+
+    The levels come down to the distances that are found.
+    """
     solids, motion = body
-    groups, slack = tables.groups, tables.slack
+    groups = tables.groups
     ball, low, high = block
     value, by, point = out
-    lever = -np.inf
-    for i in range(low, high):
-        lever = max(lever, value[i])
     near, least = np.empty(groups.narrow.shape[0] + 1, dtype=np.int64), np.empty(groups.narrow.shape[0] + 1)
-    found = near_groups(solids, groups, ball, min(lever, limit), (near, least))
+    found = near_groups(solids, groups, ball, _greatest(level, low, high), (near, least))
     for n in np.argsort(least[:found]):
-        lever = -np.inf
-        for i in range(low, high):
-            lever = max(lever, value[i])
-        lever = min(lever, limit)
+        lever = _greatest(level, low, high)
         if least[n] > lever:
             break
         for k in range(groups.first[near[n]], groups.first[near[n] + 1]):
             for j in range(solids.shape[0]):
-                middle, _, _ = moment(solids[j], motion, (k, 0.5), (ball[0], ball[1], ball[2], 0.0, 0.0, 0.0), 0.0)
-                if middle - slack[k] - ball[3] <= lever:
-                    for i in range(low, high):
-                        _approach((solids[j], motion), (k, tables.arrival[k]), point, (value, by), i)
+                plane = _tangent_at((solids[j], motion), k, ball)
+                if plane.low - ball[3] > lever:  # no slope is above one
+                    continue
+                g0, g1, g2 = plane.slope
+                for i in range(low, high):
+                    d0, d1, d2 = point[i, 0] - ball[0], point[i, 1] - ball[1], point[i, 2] - ball[2]
+                    if plane.low + g0 * d0 + g1 * d1 + g2 * d2 < level[i]:
+                        _approach((solids[j], motion), (k, tables.arrival[k]), point, (value, by, level), i)
 
 
-@jit
-def _approach(body: Body, which: tuple[int, int], point: Array, out: tuple[Array, Index], i: int) -> None:
+@jit_inline
+def _approach(body: Body, which: tuple[int, int], point: Array, out: tuple[Array, Index, Array], i: int) -> None:
     """Distance of point i from motion which[0], which arrives at which[1], where it is less than what is known."""
     solid, motion = body
     k, arrival = which
-    value, by = out
+    value, by, level = out
     ray = (point[i, 0], point[i, 1], point[i, 2], 0.0, 0.0, 0.0)
     middle, slope, _ = moment(solid, motion, (k, 0.5), ray, 0.0)
-    if middle - 0.5 * abs(slope) - LOOK < value[i]:
+    if middle - 0.5 * abs(slope) - LOOK < level[i]:
         least, _, _, _ = least_over_motion(solid, motion, k, ray, 0.0)
         if least < value[i]:
             value[i] = least
             by[i] = arrival
+            level[i] = min(level[i], least)
 
 
 @jit
 def _clear(body: Body, tables: ClearanceTables, blocks: tuple[Array, Index, Index],
-           out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
-    """Distances of the points of blocks levels[2] up to levels[3], true where within a margin of the least so far."""
+           out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, Array, int, int]) -> None:
+    """Distances of the points of blocks levels[2] up to levels[3], true where within their margins of the least."""
     ball, first, which = blocks
     value, by, point, counts = out
     best, margin, low, high = levels
+    level = np.empty(len(value))
     for n in range(low, high):
         b = which[n]
-        _clear_block(body, tables, (ball[b], first[b], first[b + 1]), (value, by, point), best + margin)
+        for i in range(first[b], first[b + 1]):
+            level[i] = min(value[i], best + margin[i] + _ROUNDING)
+        _clear_block(body, tables, (ball[b], first[b], first[b + 1]), (value, by, point), level)
         for i in range(first[b], first[b + 1]):
             if counts[i] and value[i] < best:
                 best = value[i]
@@ -204,15 +249,15 @@ class _Search:
         # A place at a step must not end the search for places beside it, which is farther than its distance tells.
         counts = np.ascontiguousarray(cells.on_face[order] & (off == 0.0))
         for tile in self.tiles:
-            self._lower(tile, blocks, (value, by, point, counts), float(cells.radius.max()))
+            self._lower(tile, blocks, (value, by, point, counts), cells.radius[order])
         value = np.maximum(value, np.minimum(value + off, 0.0))
         result, reached = np.empty_like(value), np.empty_like(by)
         result[order], reached[order] = value, by
         return result, reached
 
     def _lower(self, tile: Tile, blocks: Blocks, out: tuple[Array, Index, Array, NDArray[np.bool_]],
-               margin: float) -> None:
-        """Lower distances to those from a tile of motions, as far as they may come within a margin of the least."""
+               margin: Array) -> None:
+        """Lower distances to those from a tile of motions, as far as they may come within margins of the least."""
         motions = tile.motions
         body = (self.solids, (motions.start, motions.step, motions.axis, motions.turn))
         tables = ClearanceTables(tile.groups, tile.slack, motions.arrival)
@@ -224,7 +269,7 @@ class _Search:
             best = min(self.best.distance, float(out[0][out[3]].min(initial=np.inf)))
             kernel(body, tables, (blocks.ball, blocks.first, which), out, (best, margin, *part))
 
-        in_chunks(work, int((least <= self.best.distance + margin).sum()), *self.workers)
+        in_chunks(work, int((least <= self.best.distance + margin.max()).sum()), *self.workers)
 
     def first_look(self) -> SampleCells:
         """Cells of whole faces, the nearest faces first, as long as one may come nearer than what is known."""

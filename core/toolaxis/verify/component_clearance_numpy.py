@@ -15,7 +15,7 @@ _PAIRS = 200_000
 
 
 def clear_numpy(body: tuple[Array, Motion], tables: tuple[Any, Array, Index], blocks: tuple[Array, Index, Index],
-                out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, float, int, int]) -> None:
+                out: tuple[Array, Index, Array, NDArray[np.bool_]], levels: tuple[float, Array, int, int]) -> None:
     """Distances of blocks of points from all motions, as far as they may be among the least.
 
     Parameters
@@ -25,7 +25,8 @@ def clear_numpy(body: tuple[Array, Motion], tables: tuple[Any, Array, Index], bl
     tables : groups (not used here), slack (n,), arrival (n,)
     blocks : ball (b, 4), first (b + 1,), and the order of the blocks
     out : value, by, point, counts; the first two are changed in place
-    levels : least known distance, and margin above it within which distances are wanted, mm; blocks from and to
+    levels : least known distance, and for each point the margin above it within which its distance is wanted, mm;
+        blocks from and to
     """
     ball, first, which = blocks
     _, slack, arrival = tables
@@ -44,7 +45,7 @@ def clear_numpy(body: tuple[Array, Motion], tables: tuple[Any, Array, Index], bl
             bound = meridian_numpy(solid, rho, z)[0] - slack - ball[b, 3]
             order = np.argsort(bound, kind="stable")
             for k in np.array_split(order, max(1, len(order) * len(i) // _PAIRS)):
-                k = k[bound[k] <= min(float(value[i].max()), best + margin)]
+                k = k[bound[k] <= min(float(value[i].max()), best + float(margin[i].max()))]
                 if len(k):
                     _approach((solid, motion), (i, k), point, (value, by), arrival)
         best = min(best, float(value[i][counts[i]].min(initial=np.inf)))

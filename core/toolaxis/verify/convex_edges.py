@@ -15,6 +15,7 @@ from toolaxis.numeric.vectors import dot, unit
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import NearestPoints, nearest
 from toolaxis.verify.borders import STEP, BorderLoop, in_parameters, line_of, on_border
+from toolaxis.verify.spatial_blocks import blocks_of
 
 Array = NDArray[np.float64]
 
@@ -75,9 +76,11 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     foot, normal, depth = rays
     reach = max(NEAR, TIMES * allowed)
     told, near = depth.copy(), np.zeros(len(foot), dtype=bool)
+    beside = [(other, _may_lie_within(reach, other, foot)) for other in around[0]]
     for first in range(0, len(foot), _AT_ONCE):
         rows = np.arange(first, min(first + _AT_ONCE, len(foot)))
-        ends = [*(_behind(other, (foot[rows], normal[rows], depth[rows]), reach) for other in around[0]),
+        ends = [*(_behind(other, (foot[rows], normal[rows], depth[rows]), close[rows], reach)
+                  for other, close in beside),
                 _open(face, (foot[rows], normal[rows]), (*around[0], *around[1]), reach)]
         here = np.any([end.there for end in ends], axis=0)
         near[rows], rows = here, rows[here]
@@ -92,11 +95,27 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     return told, near
 
 
-def _behind(other: Face, rays: tuple[Array, Array, Array], reach: float) -> End:
-    """The face behind a convex edge, where rays stand near it: how it lies beside them all the way down."""
+def _may_lie_within(reach: float, other: Face, foot: Array) -> NDArray[np.bool_]:
+    """Which of some places may lie nearer to a face than a reach, (k,) bool; the others surely do not.
+
+    A place is no nearer to the face than the middle of a ball around it and its neighbours, less the ball's radius:
+    asking for the middles leaves a few of the places to ask for.
+    """
+    near = ((foot > other.box[0] - reach) & (foot < other.box[1] + reach)).all(axis=1)
+    rows = np.flatnonzero(near)
+    if len(rows):
+        blocks = blocks_of(foot[rows])
+        least = nearest(other, blocks.ball[:, :3]).distance - blocks.ball[:, 3]
+        near[rows[blocks.order]] = np.repeat(least < reach, np.diff(blocks.first))
+    return near
+
+
+def _behind(other: Face, rays: tuple[Array, Array, Array], close: NDArray[np.bool_], reach: float) -> End:
+    """The face behind a convex edge, where rays that may be close to it stand near it: how it lies beside them all the
+    way down."""
     foot, normal, depth = rays
     end = _nowhere(foot, normal)
-    rows = np.flatnonzero(((foot > other.box[0] - reach) & (foot < other.box[1] + reach)).all(axis=1))
+    rows = np.flatnonzero(close)
     if not len(rows):
         return end
     found = nearest(other, foot[rows])

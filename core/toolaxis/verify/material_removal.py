@@ -18,7 +18,7 @@ from toolaxis.verify.linear_motions import GROUP, Hierarchy, Tile, Tiles, floors
 from toolaxis.verify.material_removal_numpy import remove_numpy
 from toolaxis.verify.revolved_solids import cutter_solid, reach_of
 from toolaxis.verify.spatial_blocks import balls, blocks_of, in_chunks
-from toolaxis.verify.swept_solid import LOOK, first_entry, gradient, moment
+from toolaxis.verify.swept_solid import LOOK, ROOT, first_entry, gradient, least_over_motion, moment, sway
 
 Array = NDArray[np.float64]
 Index: TypeAlias = NDArray[np.int64]
@@ -67,15 +67,24 @@ class RestMaterial:
     uncertainty: float
 
 
-@jit
+@jit_inline
 def _meet(body: Body, which: tuple[int, bool, int], ray: Array, out: Found, place: tuple[int, float]) -> None:
-    """Let motion which[0] (cutting or not, arriving at which[2]) act on ray place[0], outside until t = place[1]."""
+    """Let motion which[0] (cutting or not, arriving at which[2]) act on ray place[0], outside until t = place[1].
+
+    A look at the top of the span comes first: most rays are told to stay outside by the solid's function and its slope
+    there.
+    """
     solid, motion = body
     k, cutting, arrival = which
     i, start = place
     remaining, gouge, cut_by, gouged_by = out
     level = _level((remaining[i], gouge[i]), ray[i, 7], cutting)
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
+    change = sway(motion, k)
+    _, low, along, _ = least_over_motion(solid, motion, k, line, level)
+    low -= LOOK if change > 0.0 else ROOT
+    if low > max(along + change, 0.0) * (level - start):
+        return
     entry = first_entry(solid, motion, k, line, (start, level))
     if -entry > gouge[i]:
         gouge[i] = -entry
@@ -161,53 +170,133 @@ def _span(ray: Array, out: Found, low: int, high: int) -> Span:
     return Span(depth, level)
 
 
-@jit_inline
-def _misses(body: Body, which: tuple[int, float], block: Block, span: Span) -> bool:
-    """Whether motion which[0], whose axis turns by which[1], surely stays off all rays of a block in a span.
+class Plane(NamedTuple):
+    """A plane below the solid's function over a whole motion: see `_plane_below`.
 
-    The solid's function is convex: over the whole block it lies above its tangent at one point, taken where the mean
-    ray leaves the span.
+    Attributes
+    ----------
+    value : float
+        At its foot, mm.
+    foot : (float, float, float)
+        mm
+    slope : (float, float, float)
+    """
+
+    value: float
+    foot: Vector
+    slope: Vector
+
+
+@jit_inline
+def _plane_below(body: Body, k: int, block: Block, level: float) -> Plane:
+    """A tangent plane of the solid's function on motion k, taken where the mean ray of a block is at a level.
+
+    The function is convex: it lies above the plane over the whole motion, but for what the turn of the axis on it takes
+    off with the distance from the foot.
     """
     solid, motion = body
-    start, (k, sway) = motion[0], which
-    c, n, t = block.centre, block.normal, span.level
-    w = (c[0] + t * n[0] - start[k, 0], c[1] + t * n[1] - start[k, 1], c[2] + t * n[2] - start[k, 2])
+    start, c, n = motion[0], block.centre, block.normal
+    foot = (c[0] + level * n[0], c[1] + level * n[1], c[2] + level * n[2])
+    w = (foot[0] - start[k, 0], foot[1] - start[k, 1], foot[2] - start[k, 2])
     value, slope, g0, g1, g2 = gradient(solid, motion, (k, 0.5), w)
+    return Plane(value - 0.5 * abs(slope) - LOOK, foot, (g0, g1, g2))
+
+
+@jit_inline
+def _misses(plane: Plane, turned: float, block: Block, span: Span) -> bool:
+    """Whether a motion, for whose turning so much is taken off, surely stays off all rays of a block in a span.
+
+    The foot of the plane below it is where the mean ray leaves the span.
+    """
+    n, (g0, g1, g2) = block.normal, plane.slope
     along = g0 * n[0] + g1 * n[1] + g2 * n[2]
     across = np.sqrt(max(g0 * g0 + g1 * g1 + g2 * g2 - along * along, 0.0))
     length = span.depth + span.level
-    least = value - 0.5 * abs(slope) - LOOK - abs(along) * block.thick - across * block.wide
+    least = plane.value - abs(along) * block.thick - across * block.wide
     least -= max(along, 0.0) * length + max(span.depth, span.level) * block.spread
-    return bool(least - sway * (block.radius + length) > 0.0)
+    return bool(least - turned > 0.0)
 
 
-@jit
-def _meet_group(body: Body, tables: RemovalTables, ray: Array, out: Found, near: tuple[Index, int, Array],
+@jit_inline
+def _misses_ray(plane: Array, m: int, ray: Array, i: int, level: float) -> bool:
+    """Whether candidate m surely stays off ray i up to a level: its plane is lowest at one of the ray's ends there."""
+    at_foot = plane[m, 0] + plane[m, 1] * ray[i, 0] + plane[m, 2] * ray[i, 1] + plane[m, 3] * ray[i, 2]
+    along = plane[m, 1] * ray[i, 3] + plane[m, 2] * ray[i, 4] + plane[m, 3] * ray[i, 5]
+    return bool(at_foot + min(along * level, -along * ray[i, 6]) > 0.0)
+
+
+class Candidates(NamedTuple):
+    """Motions of a group that may come to a block of rays.
+
+    Attributes
+    ----------
+    motion : (GROUP,) array of int
+        The first `count` of them.
+    plane : (GROUP, 4) array
+        Value at the part's origin, mm, and slope of a plane below the solid's function on each, all turning taken off.
+    left : (GROUP,) array of int
+        Room for those that may come to one ray.
+    look : (GROUP, 3) array
+        Room for what is seen of them: value, slope along the ray, and height.
+    """
+
+    motion: Index
+    plane: Array
+    left: Index
+    look: Array
+
+
+@jit_inline
+def _collect(body: Body, tables: RemovalTables, block: Block, span: Span, group: int, near: Candidates) -> int:
+    """Put the motions of a group that may come to a block of rays among the candidates; how many they are."""
+    count, length, lever = 0, span.depth + span.level, max(span.depth, span.level)
+    for k in range(tables.groups.first[group], tables.groups.first[group + 1]):
+        plane = _plane_below(body, k, block, span.level)
+        # No point of a ray is farther from the plane's foot than this.
+        turned = tables.sway[k] * (block.radius + length + lever * block.spread)
+        if not _misses(plane, turned, block, span):
+            foot, slope = plane.foot, plane.slope
+            near.motion[count] = k
+            near.plane[count, 0] = plane.value - turned - (slope[0] * foot[0] + slope[1] * foot[1] + slope[2] * foot[2])
+            near.plane[count, 1], near.plane[count, 2], near.plane[count, 3] = slope
+            count += 1
+    return count
+
+
+@jit_inline
+def _meet_group(body: Body, tables: RemovalTables, ray: Array, out: Found, near: tuple[Candidates, int],
                 place: tuple[int, float]) -> None:
-    """Let the motions near[0][:near[1]] act on ray place[0]: the closest first, then those it does not rule out.
+    """Let the first near[1] candidates act on ray place[0]: the closest first, then those it does not rule out.
 
-    One look at the middle of each motion, at height t, tells that the solid's function over the whole motion and ray
-    is at least rest + along (t' - t); that rules most of them out, and bounds the root of the others from below.  It
-    tells most near the height at which the ray will be cut in the end: place[1] is a guess.
+    Their planes rule most of them out.  One look at the middle of each other motion, at height t, tells that the
+    solid's function over the whole motion and ray is at least rest + along (t' - t); that rules out more of them, and
+    bounds the root of the others from below.  It tells most near the height at which the ray will be cut in the end:
+    place[1] is a guess.
     """
     solid, motion = body
-    which, count, look = near
+    left, look = near[0].left, near[0].look
     i, guess = place
     cutting, arrival = tables.cutting, tables.arrival
     line = (ray[i, 0], ray[i, 1], ray[i, 2], ray[i, 3], ray[i, 4], ray[i, 5])
     found, bottom = (out[0][i], out[1][i]), -ray[i, 6]
-    best, first = np.inf, -1
-    for n in range(count):
-        height = min(_level(found, ray[i, 7], cutting[which[n]]), guess)
-        value, slope, along = moment(solid, motion, (which[n], 0.5), line, height)
-        look[n, 0], look[n, 1], look[n, 2] = value - 0.5 * abs(slope) - LOOK, along, height
+    best, first, count = np.inf, -1, 0
+    for m in range(near[1]):
+        k = near[0].motion[m]
+        level = _level(found, ray[i, 7], cutting[k])
+        if _misses_ray(near[0].plane, m, ray, i, level):
+            continue
+        height = min(level, guess)
+        value, slope, along = moment(solid, motion, (k, 0.5), line, height)
+        left[count] = k
+        look[count, 0], look[count, 1], look[count, 2] = value - 0.5 * abs(slope) - LOOK, along, height
         if value < best:
-            best, first = value, n
+            best, first = value, count
+        count += 1
     for turn in range(-1, count):
         n = first if turn < 0 else turn
         if turn == first:
             continue
-        k, along = which[n], look[n, 1]
+        k, along = left[n], look[n, 1]
         level, change = _level(found, ray[i, 7], cutting[k]), tables.sway[k]
         rest = look[n, 0] + along * (level - look[n, 2]) - change * abs(level - look[n, 2])
         if rest > max(along + change, 0.0) * (level - bottom):
@@ -228,20 +317,17 @@ def _remove_block(body: Body, tables: RemovalTables, ray: Array, out: Found, pla
     if found == 0:
         return
     block = _block(ray, ball, low, high)
-    which, look = np.empty(GROUP, dtype=np.int64), np.empty((GROUP, 3))
+    candidates = Candidates(np.empty(GROUP, dtype=np.int64), np.empty((GROUP, 4)), np.empty(GROUP, dtype=np.int64),
+                            np.empty((GROUP, 3)))
     for b in np.argsort(least[:found]):
         span = _span(ray, out, low, high)
         if least[b] > max(span.depth, span.level):
             break
-        count = 0
-        for k in range(groups.first[near[b]], groups.first[near[b] + 1]):
-            if not _misses(body, (k, tables.sway[k]), block, span):
-                which[count] = k
-                count += 1
+        count = _collect(body, tables, block, span, near[b], candidates)
         if count:
             guess = np.inf
             for i in range(low, high):
-                _meet_group(body, tables, ray, out, (which, count, look), (i, guess))
+                _meet_group(body, tables, ray, out, (candidates, count), (i, guess))
                 guess = out[0][i]
 
 

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 AGAINST = -0.04
 #: Places on a side of a face where walls are looked for, steps to the middle of one, and rays looked at at once.
 _SIDE, _STEPS, _AT_ONCE = 100, 6, 512
+#: Change of a way below which it is no other, mm: a hundredth of the error of a depth.
+_SETTLED = 1e-8
 
 
 def wall_depth(foot: Array, normal: Array, faces: tuple[Face, ...], depth: float) -> Array:
@@ -75,18 +77,25 @@ def _middle(face: Face, foot: Array, normal: Array, start: Array) -> Array:
     Where the nearest place of the face lies across the wall, its plane tells how far the middle is; a few steps lead to
     the place that is nearest to the middle itself.
     """
-    way = start
-    for _ in range(_STEPS):
-        found = nearest(face, foot - way[:, None] * normal)
-        outwards = face.normal(found.uv)
-        against = dot(outwards, normal)
+    way, left = start.copy(), np.arange(len(foot))
+    at, outwards, distance = np.empty_like(foot), np.empty_like(foot), np.empty(len(foot))
+    for step in range(_STEPS + 1):
+        found = nearest(face, foot[left] - way[left, None] * normal[left])
+        at[left], outwards[left], distance[left] = found.point, face.normal(found.uv), found.distance
+        if step == _STEPS:
+            break
+        against = dot(outwards[left], normal[left])
         across = against < AGAINST
-        way = np.where(across, dot(outwards, found.point - foot) / np.maximum(1.0 - against, 1.0), 1.5 * way)
-        way = np.maximum(way, 0.0)
-    found = nearest(face, foot - way[:, None] * normal)
-    outwards = face.normal(found.uv)
-    beyond = dot(outwards, found.point - foot + way[:, None] * normal)
+        far = dot(outwards[left], at[left] - foot[left]) / np.maximum(1.0 - against, 1.0)
+        further = np.maximum(np.where(across, far, 1.5 * way[left]), 0.0)
+        moved = np.abs(further - way[left]) > _SETTLED
+        way[left] = further
+        # Where the way stays as it was, so does the place, and all that comes of it.
+        left = left[moved]
+        if not len(left):
+            break
+    beyond = dot(outwards, at - foot + way[:, None] * normal)
     # The way to the face must be square to it and as long as the way to the ray's foot: else the face ends before.
-    sound = (dot(outwards, normal) < AGAINST) & (found.distance <= 1.02 * np.abs(beyond) + 1e-6)
+    sound = (dot(outwards, normal) < AGAINST) & (distance <= 1.02 * np.abs(beyond) + 1e-6)
     sound &= np.abs(beyond - way) <= 0.02 * way + 1e-6
     return np.asarray(np.where(sound, way, np.inf))
