@@ -256,6 +256,12 @@ def parts():
 
 
 @pytest.fixture(scope="session")
+def whole_parts():
+    """Parts that are planned as a whole, and a rack for one of them."""
+    return _module(ROOT / "tests" / "workbench" / "whole_parts.py")
+
+
+@pytest.fixture(scope="session")
 def posting():
     """What reads programs of FreeCAD's post-processor back."""
     return _module(ROOT / "tests" / "workbench" / "posting.py")

@@ -1,8 +1,7 @@
 """Parts planned with a rack by scripts: what stands in the document, and what is written out of it again."""
 
-import importlib.util
 import json
-from pathlib import Path
+from dataclasses import replace
 
 import FreeCAD
 import pytest
@@ -10,7 +9,7 @@ from freecad.toolaxis.cam.jobs import make_jobs
 from freecad.toolaxis.document.cam_probe import tool_libraries
 from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import operations_in, plan_of
-from freecad.toolaxis.document.plan_account import account_from
+from freecad.toolaxis.document.plan_account import account_from, account_of
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.export import export
 
@@ -20,15 +19,6 @@ from toolaxis.progress import Progress
 
 SCALLOP = 0.1
 ASKED = {"stock": 0.3, "greatest_step_over": 5.0, "lead": 0.5, "least_lean": 2.0, "held": "z<-8", "most_tools": 2}
-
-
-@pytest.fixture(scope="module")
-def whole_parts():
-    path = Path(__file__).with_name("whole_parts.py")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +73,15 @@ def test_the_plan_tells_what_is_machined_and_what_was_asked(planned, rack):
     asked = inputs_of(plan)
     assert asked.rack == (rack,) and {name: getattr(asked, name) for name in ASKED} == ASKED
     assert api.planned_with(made[0]) == plan and not plan.Stale
+
+
+def test_tools_that_machine_nothing_take_no_colour(planned):
+    """Found: the second and the ninth tool of a rack had one colour."""
+    _, theirs = planned
+    last = theirs.tools[-1]
+    more = tuple(replace(last, number=20 + k, title=f"in the rack alone {k}") for k in range(8))
+    account = account_of(replace(theirs, tools=(theirs.tools[0], *more, *theirs.tools[1:])))
+    assert [one.place for one in account.tools] == [0, 1] and account.offered == len(theirs.tools) + 8
 
 
 def test_the_library_reads_the_same_plan_from_the_folder(planned, tmp_path):

@@ -1,8 +1,6 @@
 """Whole parts by scripts: sub-surfaces, shared axes and blades in the tree, locks, and the library's own figures."""
 
-import importlib.util
 import json
-from pathlib import Path
 
 import FreeCAD
 import pytest
@@ -18,15 +16,6 @@ from toolaxis.progress import NO_PROGRESS
 
 TOOL = "ball:6"
 LENGTHS = "CuttingLength", "Travel", "MachiningTime"
-
-
-@pytest.fixture(scope="module")
-def whole_parts():
-    path = Path(__file__).with_name("whole_parts.py")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")

@@ -51,7 +51,7 @@ class CheckedCandidate(NamedTuple):
     proof : PathCheck, refused too where passes leave more on which the cutter may stand than may stay
     path : ToolPath or None, the very passes that were proven; None where none can be laid
     longer : float, cutting length over that without further passes
-    laid_for : float, share of the scallop height for which passes were laid in the end
+    laid_for : float, share of the scallop height for which passes were laid in the end; 1 where none were proven
     """
 
     one: CountedAxis
@@ -190,7 +190,7 @@ def _scatter_places(face: Face, count: int) -> Array:
 
 
 def _prove_without_refused(job: FaceProblem, placed: Layout,
-                            known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
+                           known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
     """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
     path = job.traced(placed)
     proof = _prove_path(job, path, known)

@@ -349,7 +349,7 @@ def _accept_candidate(job: FaceProblem, ledger: AxisTable, one: CountedAxis, ref
             done = check_candidate(job, candidate)
             if done.proof.witness is None:
                 return done
-            witness, job = done.proof.witness, replace(job, laid_for=done.laid_for)
+            witness, job = done.proof.witness, replace(job, laid_for=min(job.laid_for, done.laid_for))
         words = f"{REFUSED}{direction(candidate.axis)}: {sentence(witness, ledger.feasibility)}"
         refused.append(Refusal(witness.reason, witness.amount, words))
         make_room(ledger, candidate.axis, witness)

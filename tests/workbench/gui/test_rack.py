@@ -1,20 +1,8 @@
 """A part planned with a rack from the panel: chosen, computed, put into the tree, written out, saved and reopened."""
 
-import importlib.util
 import json
-from pathlib import Path
 
 import pytest
-
-TREE = Path(__file__).resolve().parents[1]
-
-
-@pytest.fixture(scope="module")
-def whole_parts():
-    spec = importlib.util.spec_from_file_location("whole_parts", TREE / "whole_parts.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -1,19 +1,6 @@
 """Whole parts from the panel: divided, picked from the curve, locked, and put into the tree as one undo step."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
-
-TREE = Path(__file__).resolve().parents[1]
-
-
-@pytest.fixture(scope="module")
-def whole_parts():
-    spec = importlib.util.spec_from_file_location("whole_parts", TREE / "whole_parts.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ class ToolShare:
     Attributes
     ----------
     place : int
-        In the order in which the plan's tools are used, from 0, with those that machine nothing; tells its colour.
+        Among the tools with which something is machined, in their order, from 0; tells its colour.
     number : int
         Place in the magazine.
     name : str
@@ -69,7 +69,7 @@ def account_of(plan):
     plan : toolaxis.plan.plan.Plan
     """
     found, rows = plan.account, []
-    for place, tool in enumerate(plan.tools):
+    for place, tool in enumerate(plan.used_tools):
         done = [op for op in plan.operations if op.done and op.tool == tool]
         if done:
             rates = plan.inputs.at_rates_of(tool)

@@ -15,7 +15,7 @@ def tool_colour(place):
     Parameters
     ----------
     place : int
-        In the order in which a plan uses its tools, from 0.
+        Among the tools with which a plan machines something, in their order, from 0.
     """
     return _COLOURS[place % len(_COLOURS)]
 
@@ -26,6 +26,7 @@ def pale_tool_colour(place):
     Parameters
     ----------
     place : int
+        As for `tool_colour`.
     """
     return tuple(_WHITE + (1 - _WHITE) * value for value in tool_colour(place))
 

@@ -164,7 +164,7 @@ def _colours(plan, standing):
     from toolaxis.report.figures.map_colouring import colours_of
 
     if len(plan.tools) > 1:
-        return {op.number: pale_tool_colour(plan.tools.index(op.tool)) for op in plan.operations if op.done}
+        return {op.number: pale_tool_colour(plan.used_tools.index(op.tool)) for op in plan.operations if op.done}
     if len(plan.operations) > 1:
         return colours_of(plan)
     kept = next((surface_colour(one) for one in standing.values()), None)
@@ -197,7 +197,7 @@ def _fill(operation, inputs, plan, which):
         frame = _standing_frame(operation, op, (thing, len(plan.operations) <= _FEW), title)
         passes = _standing_passes(operation, op, (frame, inputs.feedrate), title)
         if len(plan.tools) > 1:
-            colour_passes(passes, tool_colour(plan.tools.index(op.tool)))
+            colour_passes(passes, tool_colour(plan.used_tools.index(op.tool)))
         show_axes(operation, passes, op.face.diagonal, title)
         _standing_tool(operation, op, title, len(plan.operations) == 1)
     else:

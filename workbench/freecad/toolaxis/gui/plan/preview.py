@@ -230,7 +230,7 @@ def _polylines(colour, lines, width):
 
 def _colour_of(plan, op):
     """The colour of an operation's cuts: that of its tool where there are several."""
-    return tool_colour(plan.tools.index(op.tool)) if len(plan.tools) > 1 else colours()[0]
+    return tool_colour(plan.used_tools.index(op.tool)) if len(plan.tools) > 1 else colours()[0]
 
 
 def _lines(path, colour):
