@@ -36,6 +36,7 @@ class ToolChain(NamedTuple):
     charge : for what none of them reaches and others would, s
     first : share that the first of them reaches under its axis of what it reaches under any
     share : share of the face that it reaches under that axis
+    axis : number of that axis; -1 without a tool
     """
 
     tools: tuple[int, ...]
@@ -43,6 +44,7 @@ class ToolChain(NamedTuple):
     charge: float
     first: float = 0.0
     share: float = 0.0
+    axis: int = -1
 
     @property
     def cost(self) -> float:
@@ -66,10 +68,11 @@ class ToolChoice(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """What a tool machines under one axis: (cells,) bool, and its time, s."""
+    """What a tool machines under one axis: (cells,) bool, its time, s, and the number of the axis."""
 
     cells: Bools
     seconds: float
+    axis: int
 
 
 def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolChain, ...]:
@@ -125,7 +128,7 @@ def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) ->
     under_any, whole = reached.any(axis=1) @ prices.area, float(prices.area.sum())
 
     def _longer(tools: tuple[int, ...], seconds: float, left: Bools,
-                begun: tuple[float, float]) -> Iterator[ToolChain]:
+                begun: tuple[float, float, int]) -> Iterator[ToolChain]:
         for tool in range(tools[-1] if tools else 0, len(prices.seconds)):
             step = _best_step(prices, reached[tool], tool, left)
             if step is None:
@@ -133,13 +136,13 @@ def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) ->
             chain, rest = (*tools, tool), left & ~step.cells
             spent = seconds + step.seconds + charges.move
             area = float(prices.area[step.cells].sum())
-            own = begun if tools else (area / float(under_any[tool]), area / whole)
+            own = begun if tools else (area / float(under_any[tool]), area / whole, step.axis)
             yield ToolChain(chain, spent, charges.of(rest), *own)
             if len(chain) < most and rest.any():
                 yield from _longer(chain, spent, rest, own)
 
     if charges.possible.any():
-        yield from _longer((), 0.0, charges.possible, (0.0, 0.0))
+        yield from _longer((), 0.0, charges.possible, (0.0, 0.0, -1))
 
 
 def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:
@@ -150,7 +153,7 @@ def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _S
         return None
     good = np.flatnonzero(area >= (1 - _AS_GOOD) * area.max())
     best = good[int(np.argmin(seconds[good]))]
-    return _Step(held[best], float(seconds[best]))
+    return _Step(held[best], float(seconds[best]), best)
 
 
 def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float, most: int | None = None) -> ToolChoice:

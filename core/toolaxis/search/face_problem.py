@@ -61,6 +61,8 @@ class FaceProblem:
         Share of the scallop height for which passes are laid.
     lead : float
         Radius of the arcs on which the tool comes to passes and leaves them, mm; 0 for none.
+    enough : float
+        Cutting length for which the first known axis that serves is taken, and no better one is looked for, mm.
     """
 
     feasibility: Feasibility
@@ -72,6 +74,7 @@ class FaceProblem:
     left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
     laid_for: float = 1.0
     lead: float = 0.0
+    enough: float = 0.0
 
     @property
     def box(self) -> Array:

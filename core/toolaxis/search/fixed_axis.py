@@ -27,6 +27,7 @@ from toolaxis.search.few_in_the_way import find_few_in_the_way, list_axes_to_try
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
 from toolaxis.search.kinematic_axis import by_jerk, describe_jerk, next_by_jerk
+from toolaxis.search.known_axes import find_known_axis
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import (
     REFUSED,
@@ -36,6 +37,7 @@ from toolaxis.search.machine_limits import (
     snap_to_increments,
 )
 from toolaxis.search.messages import (
+    KNOWN_AXIS,
     Refusal,
     direction,
     main_first,
@@ -244,6 +246,10 @@ def _search_once(job: FaceProblem, method: str, first: Array) -> tuple[FoundAxis
 def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> FoundAxis:
     """The best axis that a method finds and the proof accepts, of those that it found when the work for it was done."""
     how = METHODS[method]
+    known = find_known_axis(job, ledger) if how.by_cost and how.any_feed else None
+    if known is not None:
+        reasons = (*known.orientation.reasons, KNOWN_AXIS, tally(ledger))
+        return replace(known.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations), known.path
     if how.next_axis is None:
         return first_proven(job, ledger, how.find(ledger), how)
     try:

@@ -47,6 +47,9 @@ LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
 #: What is said of passes over a skin between which too much stays, as closely as they may be laid.
 STAYS_BETWEEN = "more stays higher than the scallop limit between its passes than may, as closely as they may be laid"
 
+#: What is said of an axis that was known, and beside which no better one was looked for.
+KNOWN_AXIS = "no better axis is looked for: the cut takes less time than an index move"
+
 #: Points of a border, and how many of them next to a place are looked at for a step at an edge.
 _BORDER, _NEAREST = 400, 20
 

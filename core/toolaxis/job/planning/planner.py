@@ -42,7 +42,7 @@ from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
 from toolaxis.plan.choices import DIVIDED, FEEDS, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import Option, Plan, PlanInputs
+from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
@@ -291,7 +291,7 @@ class PlanningJob:
         if found.cancelled:
             return made, True
         divisions = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
-        pieces = {k: by_reach(targets[k].face, made[k], one) for k, one in divisions.items()}
+        pieces = {k: by_reach(targets[k].face, made[k], one, targets[k].others) for k, one in divisions.items()}
         done, cancelled = self._operations_of([piece for some in pieces.values() for piece in some], stage)
         if not cancelled:  # what the proof refuses is tried once more, a little smaller
             pieces = {k: shrink_refused(some, done, made[k], divisions[k]) for k, some in pieces.items()}
@@ -494,7 +494,7 @@ class PlanningJob:
                 return Operation(number, face, self.tool, replace(found, reasons=why))
             if found.axis is None and (given is None or self._strategy.moves):
                 refused = found.reasons
-                found, path = self._search_axis(face, axis, inner)
+                found, path = self._search_axis(target, inner)
                 found = replace(found, reasons=(*(f"{REFUSED}{why}" for why in refused), *found.reasons))
         except Cancelled:
             raise
@@ -522,13 +522,23 @@ class PlanningJob:
         refused = tuple(f"{REFUSED}{why}; another shared axis serves" for why in found.reasons)
         return replace(other, reasons=(*other.reasons, *refused)), path
 
-    def _search_axis(self, face: Face, start: Array | None, progress: Progress) -> tuple[Orientation, ToolPath | None]:
+    def _search_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
         job = self
         if self._strategy.moves:  # in a comparison with a plan for least time, or along planes
             objective = "length" if self.inputs.objective == "time" else self.inputs.objective
             job = replace(self, inputs=replace(self.inputs, objective=objective, passes=ISO))
-        return self._strategy.plan(job._task(face, progress), self.inputs, start)
+            return self._strategy.plan(job._task(target.face, progress), self.inputs, target.axis)
+        others = () if target.shared else target.others
+        known = others if target.axis is None else (target.axis, *others)
+        task = replace(self._task(target.face, progress), enough=self._enough)
+        return self._strategy.plan(task, self.inputs, np.array(known) if known else None)
+
+    @property
+    def _enough(self) -> float:
+        """Cutting length that takes no longer than an index move, mm; 0 in a plan with one tool."""
+        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
+        return INDEX_SECONDS * rate if self.asked_area > 0 else 0.0
 
     @property
     def _strategy(self) -> Strategy:

@@ -42,6 +42,8 @@ WHOLE, MUCH = 0.8, 0.3
 APART_BELOW = 0.5
 #: Share of a face that is out of reach where no tool is asked for it.
 PROVEN = 0.99
+#: Axes of earlier operations that are tried at once for what these left, at most.
+_KNOWN = 5
 #: Cutting time above which it is told before it is planned, s.
 _VERY_LONG = 8 * 3600.0
 
@@ -60,6 +62,8 @@ class _Waiting:
         Places in the list of operations of those that left it.
     in_pieces : bool
         Whether the tool reaches too little of it under one axis to be asked for all of it.
+    axis : (3,) array or None
+        The axis under which the choice of tools reckoned with it.
     """
 
     root: Face
@@ -67,6 +71,7 @@ class _Waiting:
     tool: int
     left_by: frozenset[int] = frozenset()
     in_pieces: bool = False
+    axis: Array | None = None
 
 
 @dataclass(eq=False)
@@ -149,7 +154,8 @@ class RackPlanner:
                 continue
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             tool = chain.tools[0] if chain.tools else max(allowed)
-            self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain)))
+            self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain),
+                                          axis=self._screen.first_axis(chain)))
 
     def _tell_time(self, area: float, seconds: float, progress: Progress) -> None:
         """Tell before all else where cutting will take very long: of a large part with small tools."""
@@ -184,8 +190,8 @@ class RackPlanner:
         self._waiting = [one for one in self._waiting if one.tool != tool]
         if not now:
             return True
-        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, in_pieces=one.in_pieces)
-                   for label, one in now.items()]
+        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, one.axis,
+                          others=self._axes_of(one), in_pieces=one.in_pieces) for label, one in now.items()]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, progress)
         stopped = made.outcome == "cancelled"
@@ -221,6 +227,18 @@ class RackPlanner:
             if left >= LEAST_AREA:
                 self._rests.append(_rest_not_begun(one, left))
 
+    def _axes_of(self, one: _Waiting) -> tuple[Array, ...]:
+        """Axes of earlier operations on the same sub-surface, those first that left what waits, and not too many."""
+        order = sorted(range(len(self._done)), key=lambda place: place not in one.left_by)
+        found: list[Array] = []
+        for op in (self._done[place] for place in order):
+            axis = op.orientation.axis
+            if op.face.number != one.root.number or axis is None:
+                continue
+            if not any(np.array_equal(axis, other) for other in found):
+                found.append(axis)
+        return tuple(found[:_KNOWN])
+
     def _name(self, one: _Waiting) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
         self._steps[one.root.label] += 1
@@ -238,7 +256,8 @@ class RackPlanner:
             self._left_by[len(self._done)] = origin.left_by
             self._done.append(op)
         if following is not None:
-            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, _in_pieces(following)))
+            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, _in_pieces(following),
+                                          self._screen.first_axis(following)))
 
     def _next_tool(self, rest: Face, tool: int) -> ToolChain | None:
         """The tools that finish what another one left; None where no smaller one reaches anything of it."""
@@ -400,7 +419,8 @@ class _Screen:
         inputs = jobs[0].inputs
         tools = [job.tool for job in jobs]
         cells = self._cells(face)
-        axes = self._axes[(cells.normal @ self._axes.T > 0).any(axis=0)]
+        facing = np.flatnonzero((cells.normal @ self._axes.T > 0).any(axis=0))
+        axes = self._axes[facing]
         if not len(axes) or not len(cells):
             return (ToolChain((), 0.0, 0.0),)
         scene = replace(self._scene, allowance=inputs.allowance_of(face))
@@ -410,4 +430,14 @@ class _Screen:
         held = reached & (wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         found = chains_of(FacePrices(seconds, cells.area), INDEX_SECONDS)
-        return tuple(one._replace(tools=tuple(tool + begin for tool in one.tools)) for one in found)
+        return tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
+                     if one.tools else one for one in found)
+
+    def first_axis(self, chain: ToolChain) -> Array | None:
+        """The axis of the first tool of a chain, (3,); None without a tool.
+
+        Parameters
+        ----------
+        chain : ToolChain
+        """
+        return self._axes[chain.axis] if chain.tools else None

@@ -37,9 +37,9 @@ _FACETS = 16
 
 
 class Target(NamedTuple):
-    """A sub-surface, the axis that its division reckoned with, if any, whether it shares that with others, the axes
-    that others share, what of it was given by hand, what became of it where its division failed or was refused, and
-    whether it is divided by reach before an axis is looked for that reaches all of it."""
+    """A sub-surface, the axis that its division or the choice of its tool reckoned with, if any, whether it shares that
+    with others, the axes that others have, what of it was given by hand, what became of it where its division failed or
+    was refused, and whether it is divided by reach before an axis is looked for that reaches all of it."""
 
     face: Face
     axis: Array | None = None
@@ -62,7 +62,7 @@ def by_axis(targets: list[Target]) -> list[Target]:
     return [targets[k] for k in sorted(range(len(targets)), key=lambda k: names.index(names[k]))]
 
 
-def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Target]:
+def by_reach(face: Face, whole: Operation, division: ReachDivision, others: tuple[Array, ...] = ()) -> list[Target]:
     """Sub-surfaces of a face, each with an axis that reaches it, and what none reaches, which has ended.
 
     Parameters
@@ -72,8 +72,10 @@ def by_reach(face: Face, whole: Operation, division: ReachDivision) -> list[Targ
         Of the face as a whole, without an axis.
     division : ReachDivision
         With a sub-surface at least.
+    others : tuple of (3,) arrays
+        Axes that others have.
     """
-    targets = [Target(face.trimmed(piece.loops, face.label + letters(k)), piece.axis)
+    targets = [Target(face.trimmed(piece.loops, face.label + letters(k)), piece.axis, others=others)
                for k, piece in enumerate(division.pieces)]
     if division.rest:
         every = tuple(loop for loops in division.rest for loop in loops)
@@ -124,7 +126,7 @@ def shrink_refused(targets: Sequence[Target], operations: Sequence[Operation], w
             refused.append(k)
     if not refused:
         return list(targets)
-    anew = by_reach(whole.face, whole, division.shrink(refused))
+    anew = by_reach(whole.face, whole, division.shrink(refused), targets[0].others)
     return [anew[k] if k in refused or k >= len(division.pieces) else targets[k] for k in range(len(anew))]
 
 

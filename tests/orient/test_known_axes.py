@@ -1,0 +1,59 @@
+"""Where a cut takes less time than an index move, an axis that is known is taken, and only if its passes are proven."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.orient.conftest import seeded
+from toolaxis import Tool
+from toolaxis.feasibility.violations import CUTTER, Violation
+from toolaxis.numeric.vectors import unit
+from toolaxis.search import known_axes
+from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.fixed_axis import find_axis
+from toolaxis.search.messages import KNOWN_AXIS
+
+TOOL, SCALLOP = Tool.torus(6, 1, stickout=40), 0.05
+LEANING = unit(np.array([0.1, 0.25, 1.0]))
+#: It sees next to nothing of the face.
+FLAT = unit(np.array([1.0, 0.0, 0.05]))
+
+
+@pytest.fixture(scope="module")
+def problem() -> FaceProblem:
+    return task(seeded(3, height=0.1), TOOL, SCALLOP)
+
+
+def test_the_first_known_axis_that_serves_is_taken_as_it_is(problem: FaceProblem) -> None:
+    found, path = find_axis(replace(problem, enough=1e6), starts=[FLAT, LEANING, [0.0, 0.0, 1.0]])
+    assert np.array_equal(found.axis, LEANING) and path is not None
+    assert KNOWN_AXIS in found.reasons
+    searched, _ = find_axis(problem, starts=[LEANING])
+    assert searched.evaluations > 5 * found.evaluations
+    assert found.unreached == 0
+    assert searched.length < found.length, "a long cut would be worth the search"
+
+
+@pytest.mark.parametrize("enough", [0.0, 50.0], ids=["with one tool", "of a long cut"])
+def test_a_better_axis_is_looked_for_otherwise(problem: FaceProblem, enough: float) -> None:
+    found, _ = find_axis(replace(problem, enough=enough), starts=[LEANING])
+    assert KNOWN_AXIS not in found.reasons
+    assert not np.array_equal(found.axis, LEANING)
+
+
+def test_an_axis_that_the_proof_refuses_is_not_taken(problem: FaceProblem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only what `check_candidate` accepts is taken; after a few refusals the search goes on as ever."""
+    asked = []
+    real = known_axes.check_candidate
+
+    def refuse(job, one):
+        asked.append(one.axis)
+        done = real(job, one)
+        return done._replace(proof=replace(done.proof, witness=Violation(CUTTER, 0.0, words="refused")))
+
+    monkeypatch.setattr(known_axes, "check_candidate", refuse)
+    starts = [LEANING, *(unit(np.array([0.1, 0.25 + 0.02 * k, 1.0])) for k in range(1, 5))]
+    found, path = find_axis(replace(problem, enough=1e6), starts=starts)
+    assert len(asked) == known_axes._PROVEN
+    assert path is not None and KNOWN_AXIS not in found.reasons
