@@ -4,20 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from tests.orient.conftest import seeded
+
 from toolaxis import Tool
 from toolaxis.feasibility.violations import CUTTER, Violation
 from toolaxis.numeric.vectors import unit
 from toolaxis.search import known_axes
 from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.fixed_axis import find_axis
-from toolaxis.search.messages import KNOWN_AXIS
+from toolaxis.search.messages import AS_GOOD, KNOWN_AXIS
 
 TOOL, SCALLOP = Tool.torus(6, 1, stickout=40), 0.05
 LEANING = unit(np.array([0.1, 0.25, 1.0]))
 #: It sees next to nothing of the face.
 FLAT = unit(np.array([1.0, 0.0, 0.05]))
+
+
+def with_index_moves(job: FaceProblem, length: float) -> FaceProblem:
+    """The same problem where an index move takes as long as a cut of a length, mm."""
+    return replace(job, worth=replace(job.worth, index_length=length))
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +31,7 @@ def problem() -> FaceProblem:
 
 
 def test_the_first_known_axis_that_serves_is_taken_as_it_is(problem: FaceProblem) -> None:
-    found, path = find_axis(replace(problem, enough=1e6), starts=[FLAT, LEANING, [0.0, 0.0, 1.0]])
+    found, path = find_axis(with_index_moves(problem, 1e6), starts=[FLAT, LEANING, [0.0, 0.0, 1.0]])
     assert np.array_equal(found.axis, LEANING) and path is not None
     assert KNOWN_AXIS in found.reasons
     searched, _ = find_axis(problem, starts=[LEANING])
@@ -35,11 +40,20 @@ def test_the_first_known_axis_that_serves_is_taken_as_it_is(problem: FaceProblem
     assert searched.length < found.length, "a long cut would be worth the search"
 
 
-@pytest.mark.parametrize("enough", [0.0, 50.0], ids=["with one tool", "of a long cut"])
-def test_a_better_axis_is_looked_for_otherwise(problem: FaceProblem, enough: float) -> None:
-    found, _ = find_axis(replace(problem, enough=enough), starts=[LEANING])
+@pytest.mark.parametrize("length", [0.0, 50.0], ids=["with one tool", "of a long cut"])
+def test_a_better_axis_is_looked_for_otherwise(problem: FaceProblem, length: float) -> None:
+    found, _ = find_axis(with_index_moves(problem, length), starts=[LEANING])
     assert KNOWN_AXIS not in found.reasons
     assert not np.array_equal(found.axis, LEANING)
+
+
+def test_a_ball_end_that_reaches_all_needs_no_search_however_long_its_cut(problem: FaceProblem) -> None:
+    ball = task(problem.worth.face, Tool.ball(6, stickout=40), SCALLOP)
+    found, path = find_axis(with_index_moves(ball, 1.0), starts=[LEANING])
+    assert np.array_equal(found.axis, LEANING) and path is not None
+    assert AS_GOOD in found.reasons and found.length > 1.0
+    searched, _ = find_axis(ball, starts=[LEANING])
+    assert found.length == pytest.approx(searched.length, rel=0.02)
 
 
 def test_an_axis_that_the_proof_refuses_is_not_taken(problem: FaceProblem, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,6 +68,6 @@ def test_an_axis_that_the_proof_refuses_is_not_taken(problem: FaceProblem, monke
 
     monkeypatch.setattr(known_axes, "check_candidate", refuse)
     starts = [LEANING, *(unit(np.array([0.1, 0.25 + 0.02 * k, 1.0])) for k in range(1, 5))]
-    found, path = find_axis(replace(problem, enough=1e6), starts=starts)
+    found, path = find_axis(with_index_moves(problem, 1e6), starts=starts)
     assert len(asked) == known_axes._PROVEN
     assert path is not None and KNOWN_AXIS not in found.reasons

@@ -1,7 +1,7 @@
 """Zones of a sub-surface that its passes leave higher than the scallop limit, as closed loops with their area."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -132,6 +132,18 @@ class _RestSeen:
 
 
 @dataclass(eq=False)
+class _KnownZone:
+    """A zone of which it is told when it is asked for the first time what it is.
+
+    area : mm^2;  speck : whether it is too small or too shallow to be told;  at_wall : None before it is asked for.
+    """
+
+    area: float
+    speck: bool
+    at_wall: bool | None = None
+
+
+@dataclass(eq=False)
 class RestFinder:
     """Finds the zones that passes over one sub-surface leave higher than the scallop limit.
 
@@ -162,6 +174,7 @@ class RestFinder:
     progress: Progress = NO_PROGRESS
     between: Array | None = None
     _last: _RestSeen | None = None
+    _known: dict[bytes, _KnownZone] = field(default_factory=dict)
 
     def find(self, path: ToolPath) -> tuple[Zone, ...]:
         """The zones that the passes of a path leave, the largest first.
@@ -220,16 +233,31 @@ class RestFinder:
 
     def _zones_in(self, found: tuple[Array, ...], path: ToolPath, nodes: Array) -> tuple[Zone, ...]:
         """The zones within loops, the largest first, without what is too small or too shallow to be told."""
-        face, walls = self.face, self.walls
+        face = self.face
         deep = Excess(face, self.tool, path, self.allowance + DEEP * self.scallop)
         zones = [face.trimmed(loops) for loops in outer_with_holes(split(face.outline, found)[0])]
-        small, large = _partition_by(list(zip(zones, _areas(face, zones), strict=True)),
-                                     lambda one: one[1] <= _SPECK * self.tool.radius**2
-                                     or not _deep(one[0], deep, nodes))
-        told = tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in large)
-        if undercut(told) + sum(area for _, area in small) > may_stay(told, face.area):
-            told += tuple(Zone(zone.trims, area, _at_wall(zone, walls)) for zone, area in small)
+        # Most zones stay as they were from one look to the next: further passes are few.
+        fresh = [zone for zone in zones if _name_zone(zone) not in self._known]
+        for zone, area in zip(fresh, _areas(face, fresh), strict=True):
+            speck = area <= _SPECK * self.tool.radius**2 or not _deep(zone, deep, nodes)
+            self._known[_name_zone(zone)] = _KnownZone(area, speck)
+        small, large = _partition_by(zones, lambda zone: self._known[_name_zone(zone)].speck)
+        told = tuple(map(self._tell, large))
+        if undercut(told) + sum(self._known[_name_zone(zone)].area for zone in small) > may_stay(told, face.area):
+            told += tuple(map(self._tell, small))
         return tuple(sorted(told, key=lambda zone: -zone.area))
+
+    def _tell(self, zone: Face) -> Zone:
+        """A zone as it is told."""
+        known = self._known[_name_zone(zone)]
+        if known.at_wall is None:
+            known.at_wall = _at_wall(zone, self.walls)
+        return Zone(zone.trims, known.area, known.at_wall)
+
+
+def _name_zone(zone: Face) -> bytes:
+    """A name for a zone, that of another only where all corners of both are the same."""
+    return b"".join(loop.tobytes() for loop in zone.trims)
 
 
 def _name_motions(starts: Array, ends: Array) -> list[bytes]:

@@ -30,6 +30,8 @@ CLEAN_UP = 2.0
 #: What is too little to be searched for: cutting length, mm, and time, s; as a share of the value not less than the
 #: first and not more than the second.
 _LITTLE, _LITTLE_TIME, _SHARES = 1.5, 0.1, (5e-5, 3e-4)
+#: The same where axes are indexed: as a share of an index move, and of the value not more than the second.
+_LITTLE_OF_INDEX, _MOST_OF_INDEX = 1 / 6, 0.01
 #: Places each way from which the ideal length of an axis is told.
 _IDEAL = 16
 
@@ -56,6 +58,9 @@ class MachiningCost:
         One of `toolaxis.plan.choices.PASSES`.
     greatest_step_over : float
         Greatest distance of neighbouring passes, mm; infinite for none.
+    index_length : float
+        Length of a cut that takes as long as an index move, mm: where more axes than one are indexed, less than a
+        small part of it is not worth a search.  0 where the best axis is to be found in any case.
 
     Raises
     ------
@@ -72,6 +77,7 @@ class MachiningCost:
     feed: str | None = None
     passes: str = ISO
     greatest_step_over: float = np.inf
+    index_length: float = 0.0
     _of_ball: dict[tuple[str, str], Count] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -218,6 +224,8 @@ class MachiningCost:
         value : float
             What is to be least.
         """
+        if self.objective == "length" and self.index_length > 0:
+            return float(np.clip(_LITTLE_OF_INDEX * self.index_length / value, _SHARES[0], _MOST_OF_INDEX))
         little = {"length": _LITTLE, "time": _LITTLE_TIME, "passes": 0.0}[self.objective]
         return float(np.clip(little / value, *_SHARES))
 

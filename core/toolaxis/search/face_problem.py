@@ -61,8 +61,6 @@ class FaceProblem:
         Share of the scallop height for which passes are laid.
     lead : float
         Radius of the arcs on which the tool comes to passes and leaves them, mm; 0 for none.
-    enough : float
-        Cutting length for which the first known axis that serves is taken, and no better one is looked for, mm.
     """
 
     feasibility: Feasibility
@@ -74,7 +72,6 @@ class FaceProblem:
     left_out: Array = field(default_factory=lambda: np.empty((0, 3)))
     laid_for: float = 1.0
     lead: float = 0.0
-    enough: float = 0.0
 
     @property
     def box(self) -> Array:
@@ -226,7 +223,8 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
          objective: str = "length", part: Part | None = None, skin: Sequence[Face] = (),
          surroundings: Sequence[Face] = (), tolerance: ToleranceLike = None, allowance: float = 0.0,
          direction: str = "zigzag", passes: str = ISO, feeds: Feeds | None = None,
-         greatest_step_over: float = np.inf, lead: float = 0.0, progress: Progress = NO_PROGRESS) -> FaceProblem:
+         greatest_step_over: float = np.inf, lead: float = 0.0, index_length: float = 0.0,
+         progress: Progress = NO_PROGRESS) -> FaceProblem:
     """Gather what decides about an axis for a face.
 
     Parameters
@@ -235,6 +233,8 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
         As for `best_axis`.
     greatest_step_over, lead : float
         As for `best_axis`.
+    index_length : float
+        Length of a cut that takes as long as an index move, mm; 0 where the best axis is to be found in any case.
     limits : AxisLimits, optional
     progress : Progress
 
@@ -246,7 +246,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     given = Tolerance.of(tolerance)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
     worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes,
-                          greatest_step_over=greatest_step_over)
+                          greatest_step_over=greatest_step_over, index_length=index_length)
     chord = given.chord_for(scallop)
     kept = replace(given, gouge=given.gouge - chord, cutter_clearance=given.cutter_clearance + MARGIN,
                    shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)

@@ -37,7 +37,6 @@ from toolaxis.search.machine_limits import (
     snap_to_increments,
 )
 from toolaxis.search.messages import (
-    KNOWN_AXIS,
     Refusal,
     direction,
     main_first,
@@ -248,8 +247,9 @@ def _first_proven(job: FaceProblem, ledger: AxisTable, method: str) -> FoundAxis
     how = METHODS[method]
     known = find_known_axis(job, ledger) if how.by_cost and how.any_feed else None
     if known is not None:
-        reasons = (*known.orientation.reasons, KNOWN_AXIS, tally(ledger))
-        return replace(known.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations), known.path
+        done, words = known
+        reasons = (*done.orientation.reasons, words, tally(ledger))
+        return replace(done.orientation, reasons=reasons, map=ledger.map(), evaluations=ledger.evaluations), done.path
     if how.next_axis is None:
         return first_proven(job, ledger, how.find(ledger), how)
     try:
@@ -294,8 +294,9 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     found = snap_to_increments(ledger, found)
     if found:
         allow_proof()
-    with suppress(OutOfWork), up_to(_ORDERED):
-        found = least_made(job.worth, found, job.made)
+    if found and not found[0].length <= job.worth.index_length:  # shorter cuts differ by less than matters
+        with suppress(OutOfWork), up_to(_ORDERED):
+            found = least_made(job.worth, found, job.made)
     return _first_accepted(job, ledger, found, method)
 
 
@@ -337,7 +338,8 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
     if done.longer <= _LONGER or job.worth.feed is not None:
         return None
     other = CountedAxis(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
-    if not other.value < done.value:
+    gain = done.value - other.value
+    if not gain > (job.worth.index_length if job.worth.objective == "length" else 0.0):
         return None
     again = check_candidate(replace(job, laid_for=done.laid_for), other)
     return again if again.proof.witness is None and again.value < done.value else None

@@ -1,4 +1,4 @@
-"""Axes that are known already: where a cut takes less time than an index move, the first one that serves is taken."""
+"""Axes that are known already: where no other one can do much better, the first of them that serves is taken."""
 
 from toolaxis.feasibility.violations import FREE
 from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
@@ -6,49 +6,62 @@ from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.local_search import CountedAxis, count_row, proven, sound
 from toolaxis.search.machine_limits import snap_to_increments
+from toolaxis.search.messages import AS_GOOD, KNOWN_AXIS
 
 #: Known axes that are put to the proof at most.
 _PROVEN = 2
 
 
-def find_known_axis(job: FaceProblem, ledger: AxisTable) -> CheckedCandidate | None:
-    """The first of the axes from which a search begins with which a sub-surface is machined quickly enough.
+def find_known_axis(job: FaceProblem, ledger: AxisTable) -> tuple[CheckedCandidate, str] | None:
+    """The first of the axes from which a search begins beside which no better one is worth a search.
+
+    That is where the cut is short, what is left to a clean-up tool charged; and with a ball end where it reaches the
+    whole face, as its strips are as wide under all such axes.
 
     Parameters
     ----------
     job : FaceProblem
-        With the cutting length that is short enough for no better axis to be looked for.
+        With the length of a cut that takes as long as an index move, which is short enough; 0 where the best axis is to
+        be found in any case.
     ledger : AxisTable
         Empty, with the axes to begin from; they stand in it afterwards.
 
     Returns
     -------
-    CheckedCandidate or None
-        None where nothing is short enough, what is left to a clean-up tool charged, or the proof refuses the first
+    tuple of CheckedCandidate and str, or None
+        With why no better one is looked for; None where none of them is good enough, or the proof refuses the first
         ones.
 
     Raises
     ------
     Cancelled, OutOfWork
     """
-    if job.enough <= 0 or not len(ledger.starts):
+    if job.worth.index_length <= 0 or not len(ledger.starts):
         return None
     rows, tried = ledger.look(ledger.starts), 0
     ledger.starts = ledger.starts[:0]
     for row in range(rows.start, rows.stop):
-        short = ledger.length[row].min() <= job.enough and ledger.reason[row] == FREE
-        if not short or not sound(ledger, row) or not proven(ledger, row):
+        feed = int(ledger.values[row].argmin())
+        if ledger.reason[row] != FREE or not (_is_as_good(job, ledger, row) or ledger.length[row, feed] <= job.worth.index_length):
             continue
-        held = snap_to_increments(ledger, [count_row(ledger, row)])
-        if not held or not _charge_length(job, held[0]) <= job.enough:
+        if not sound(ledger, row) or not proven(ledger, row):
+            continue
+        held = snap_to_increments(ledger, [count_row(ledger, row, feed)])
+        short = bool(held) and _charge_length(job, held[0]) <= job.worth.index_length
+        if not held or not (short or _is_as_good(job, ledger, row)):
             continue
         done = check_candidate(job, held[0])
         if done.proof.witness is None:
-            return done
+            return done, KNOWN_AXIS if short else AS_GOOD
         tried += 1
         if tried == _PROVEN:
             break
     return None
+
+
+def _is_as_good(job: FaceProblem, ledger: AxisTable, row: int) -> bool:
+    """Whether an axis of a ball end leaves nothing to a clean-up tool, and the least length is what is asked for."""
+    return job.worth.objective == "length" and job.worth.tool.flat_radius == 0 and ledger.unreached[row] == 0
 
 
 def _charge_length(job: FaceProblem, one: CountedAxis) -> float:

@@ -49,6 +49,7 @@ STAYS_BETWEEN = "more stays higher than the scallop limit between its passes tha
 
 #: What is said of an axis that was known, and beside which no better one was looked for.
 KNOWN_AXIS = "no better axis is looked for: the cut takes less time than an index move"
+AS_GOOD = "no better axis is looked for: a ball end cuts as much under all that reach the whole face"
 
 #: Points of a border, and how many of them next to a place are looked at for a step at an edge.
 _BORDER, _NEAREST = 400, 20

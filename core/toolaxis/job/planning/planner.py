@@ -531,12 +531,11 @@ class PlanningJob:
             return self._strategy.plan(job._task(target.face, progress), self.inputs, target.axis)
         others = () if target.shared else target.others
         known = others if target.axis is None else (target.axis, *others)
-        task = replace(self._task(target.face, progress), enough=self._enough)
-        return self._strategy.plan(task, self.inputs, np.array(known) if known else None)
+        return self._strategy.plan(self._task(target.face, progress), self.inputs, np.array(known) if known else None)
 
     @property
-    def _enough(self) -> float:
-        """Cutting length that takes no longer than an index move, mm; 0 in a plan with one tool."""
+    def _index_length(self) -> float:
+        """Length of a cut that takes as long as an index move, mm; 0 in a plan with one tool."""
         rate = self.inputs.at_rates_of(self.tool).feedrate / 60
         return INDEX_SECONDS * rate if self.asked_area > 0 else 0.0
 
@@ -559,7 +558,8 @@ class PlanningJob:
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
                            part=self.part, allowance=self.inputs.allowance_of(face), tolerance=self.inputs.tolerance,
                            direction=self.inputs.direction, passes=self.inputs.passes,
-                           greatest_step_over=self.inputs.step_over, lead=self.inputs.lead, progress=progress)
+                           greatest_step_over=self.inputs.step_over, lead=self.inputs.lead,
+                           index_length=self._index_length, progress=progress)
 
 
 def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:
