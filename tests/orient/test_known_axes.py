@@ -69,5 +69,5 @@ def test_an_axis_that_the_proof_refuses_is_not_taken(problem: FaceProblem, monke
     monkeypatch.setattr(known_axes, "check_candidate", refuse)
     starts = [LEANING, *(unit(np.array([0.1, 0.25 + 0.02 * k, 1.0])) for k in range(1, 5))]
     found, path = find_axis(with_index_moves(problem, 1e6), starts=starts)
-    assert len(asked) == known_axes._PROVEN
+    assert len(asked) == known_axes._REFUSED
     assert path is not None and KNOWN_AXIS not in found.reasons

@@ -8,8 +8,8 @@ from toolaxis.search.local_search import CountedAxis, count_row, proven, sound
 from toolaxis.search.machine_limits import snap_to_increments
 from toolaxis.search.messages import AS_GOOD, KNOWN_AXIS
 
-#: Known axes that are put to the proof at most.
-_PROVEN = 2
+#: Known axes that the proof may refuse before others are looked for.
+_REFUSED = 2
 
 
 def find_known_axis(job: FaceProblem, ledger: AxisTable) -> tuple[CheckedCandidate, str] | None:
@@ -38,25 +38,32 @@ def find_known_axis(job: FaceProblem, ledger: AxisTable) -> tuple[CheckedCandida
     """
     if job.worth.index_length <= 0 or not len(ledger.starts):
         return None
-    rows, tried = ledger.look(ledger.starts), 0
+    rows, refused = ledger.look(ledger.starts), 0
     ledger.starts = ledger.starts[:0]
     for row in range(rows.start, rows.stop):
-        feed = int(ledger.values[row].argmin())
-        if ledger.reason[row] != FREE or not (_is_as_good(job, ledger, row) or ledger.length[row, feed] <= job.worth.index_length):
+        one = _count_where_good(job, ledger, row)
+        if one is None:
             continue
-        if not sound(ledger, row) or not proven(ledger, row):
-            continue
-        held = snap_to_increments(ledger, [count_row(ledger, row, feed)])
-        short = bool(held) and _charge_length(job, held[0]) <= job.worth.index_length
-        if not held or not (short or _is_as_good(job, ledger, row)):
-            continue
-        done = check_candidate(job, held[0])
+        done = check_candidate(job, one)
         if done.proof.witness is None:
-            return done, KNOWN_AXIS if short else AS_GOOD
-        tried += 1
-        if tried == _PROVEN:
+            return done, KNOWN_AXIS if _is_short(job, one) else AS_GOOD
+        refused += 1
+        if refused == _REFUSED:
             break
     return None
+
+
+def _count_where_good(job: FaceProblem, ledger: AxisTable, row: int) -> CountedAxis | None:
+    """A row as a candidate that the machine can hold; None where another axis may be much better, or it does not serve.
+    """
+    feed = int(ledger.values[row].argmin())
+    as_good = _is_as_good(job, ledger, row)
+    if ledger.reason[row] != FREE or not (as_good or ledger.length[row, feed] <= job.worth.index_length):
+        return None
+    if not sound(ledger, row) or not proven(ledger, row):
+        return None
+    held = snap_to_increments(ledger, [count_row(ledger, row, feed)])
+    return held[0] if held and (as_good or _is_short(job, held[0])) else None
 
 
 def _is_as_good(job: FaceProblem, ledger: AxisTable, row: int) -> bool:
@@ -64,6 +71,6 @@ def _is_as_good(job: FaceProblem, ledger: AxisTable, row: int) -> bool:
     return job.worth.objective == "length" and job.worth.tool.flat_radius == 0 and ledger.unreached[row] == 0
 
 
-def _charge_length(job: FaceProblem, one: CountedAxis) -> float:
-    """Cutting length of a candidate with what it leaves charged, mm; infinite where it leaves no strip."""
-    return one.length * job.worth.charge(one.length, one.unreached)
+def _is_short(job: FaceProblem, one: CountedAxis) -> bool:
+    """Whether a cut, what it leaves charged, takes no longer than an index move."""
+    return one.length * job.worth.charge(one.length, one.unreached) <= job.worth.index_length
