@@ -73,11 +73,11 @@ def _newton(at: Array, target: Vector) -> _Step:
     at (6, 3): position and derivatives.
     """
     fu = fv = e = f = g = uu = uv = vv = 0.0
-    for c in range(3):
-        gap, su, sv = at[0, c] - target[c], at[1, c], at[2, c]
+    for k in range(3):
+        gap, su, sv = at[0, k] - target[k], at[1, k], at[2, k]
         fu, fv = fu + gap * su, fv + gap * sv
         e, f, g = e + su * su, f + su * sv, g + sv * sv
-        uu, uv, vv = uu + gap * at[3, c], uv + gap * at[4, c], vv + gap * at[5, c]
+        uu, uv, vv = uu + gap * at[3, k], uv + gap * at[4, k], vv + gap * at[5, k]
     a, b, c = e + uu, f + uv, g + vv
     if not (a > 0.0 and a * c - b * b > 1e-12 * e * g):
         a, b, c = e * (1.0 + 1e-9), f, g * (1.0 + 1e-9)
