@@ -1,11 +1,14 @@
 """Nearest points: closed forms, brute force, and the changes they must follow."""
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation
+from toolaxis.shape import nearest as searches
 from toolaxis.shape.analytic import PlanarSurface, SphericalSurface, ToroidalSurface
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -53,6 +56,29 @@ def test_against_brute_force_on_a_trimmed_face() -> None:
     assert (found.distance >= brute - 0.12).all()
     assert face.contains(found.uv + 1e-9 * ([0.5, 0.5] - found.uv)).mean() > 0.7
     assert found.point == pytest.approx(face.evaluate(found.uv).point, abs=1e-12)
+
+
+def test_kernels_find_what_their_twins_find(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever is passed over, on faces with holes, seams and poles, far from them, on them and at their borders."""
+    whole = [Face(surface.nurbs()) for surface in (SphericalSurface(20.0), ToroidalSurface(20.0, 6.0))]
+    for face in (freeform(), freeform(()), *whole):
+        rim = face.evaluate(np.concatenate(face.outline)).point
+        points = np.concatenate([around(face, 400, 7), face.evaluate(face.grid(9, 9)).point, rim, rim + 1e-3])
+        found = nearest(face, points)
+        monkeypatch.setattr(searches, "_KNOWN", WeakKeyDictionary())
+        monkeypatch.setattr(searches._compiled, "available", False)
+        twin = nearest(face, points)
+        monkeypatch.undo()
+        assert found.distance == pytest.approx(twin.distance, abs=2e-11)  # steps below 1e-13 of the range are not taken
+
+
+def test_bounds_of_the_ways_along_a_loop_hold() -> None:
+    for face in (freeform(), Face(SphericalSurface(20.0, (0.0, 1.5), (-1.0, 1.0)).nurbs())):
+        slopes = searches._greatest_slopes(face)
+        d = face.evaluate(face.grid(80, 80))
+        greatest = [np.linalg.norm(slope, axis=1).max() for slope in (d.su, d.sv)]
+        assert (slopes >= greatest).all()
+        assert (slopes <= np.multiply(6.0, greatest)).all()
 
 
 def test_the_way_is_normal_inside_the_face() -> None:

@@ -119,3 +119,14 @@ def test_places_near_a_face_are_all_asked_for():
     assert near.sum() > 20
     assert (asked | ~near).all()
     assert asked.sum() < 0.8 * (((places > tilted.box[0] - 0.6) & (places < tilted.box[1] + 0.6)).all(axis=1)).sum()
+
+
+@pytest.mark.parametrize("deep", [-0.05, 0.05])
+def test_what_lies_beyond_a_wall_is_no_depth_beside_a_blunt_edge(deep):
+    """A plate 0.4 mm thick whose top bends down by a tenth of a degree; the cutter works on its lower side."""
+    down = -5.0 * np.tan(np.radians(0.1))
+    bent = plane([8, 0, 0], [5, 0, down], [0, 6, 0], "bent")
+    lower = plane([0, 6, -0.4], [13, 0, 0], [0, -6, 0], "lower")
+    found = cut_along_the_edge([[8, 2, deep - 0.4], [8, 4, deep - 0.4]], [0, 0, -1], touching=(), skin=(bent, lower))
+    assert found.gouge_max == pytest.approx(max(deep, 0.0), abs=1e-3)
+    assert found.passed == (deep < 0), found.reasons

@@ -11,6 +11,7 @@ from toolaxis.shape.adjacency import Border, edges_from_borders
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
+from toolaxis.verify import seams
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
@@ -142,3 +143,20 @@ def test_without_a_step_the_depth_is_that_of_the_third_judge():
     tips = np.array(along(0.1, -0.005))
     truth, _ = depth_of_cut(solid, BALL.profile, tips, UP, [[-1, -2, -0.2], [1, 2, 0.2]])
     assert judged(solid.faces[:2], tips, 0.002).gouge_max == pytest.approx(truth, rel=0.05)
+
+
+def test_steps_near_places_are_those_of_the_whole_border_near_them():
+    high, low = missing_riser(0.007)[::-1]
+    whole = seams.steps_of(high, (low, high))
+    place = whole.point[len(whole.point) // 3]
+    near = seams.steps_of(high, (low, high), place[None])
+    far = np.linalg.norm(whole.point - place, axis=1)
+    assert len(whole.height) > len(near.height) > 0
+    assert np.array_equal(near.point, whole.point[far <= 2 * seams.REACH + seams.SPACING])
+
+
+def test_the_steps_of_two_faces_are_worked_out_once(monkeypatch):
+    high, low = missing_riser(0.007)[::-1]
+    found = seams.steps_of(high, (low,))
+    monkeypatch.setattr(seams, "nearest", None)
+    assert np.array_equal(seams.steps_of(high, (low,)).height, found.height)

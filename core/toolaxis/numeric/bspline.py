@@ -135,6 +135,37 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
 
 
 @jit_fma_inline
+def surface_point(data: SurfaceData, u: float, v: float, work: Array) -> tuple[float, float, float]:
+    """S at one (u, v), at the nearest parameters of the domain; for searches that ask for nothing else.
+
+    Parameters
+    ----------
+    data : tuple
+        The surface.
+    u, v : float
+    work : (6, 26) array
+        Scratch.
+    """
+    knots_u, knots_v, control, pu, pv, rational = data
+    uc, vc = _clamp_parameter(knots_u, pu, u), _clamp_parameter(knots_v, pv, v)
+    span_u, span_v = find_span(knots_u, pu, uc), find_span(knots_v, pv, vc)
+    _basis(knots_u, (pu, span_u), uc, work, 0)
+    _basis(knots_v, (pv, span_v), vc, work, 3)
+    i0, j0 = span_u - pu, span_v - pv
+    x = y = z = w = 0.0
+    for i in range(pu + 1):
+        a = b = c = d = 0.0
+        for j in range(pv + 1):
+            p = work[3, j]
+            a, b = a + p * control[i0 + i, j0 + j, 0], b + p * control[i0 + i, j0 + j, 1]
+            c, d = c + p * control[i0 + i, j0 + j, 2], d + p * control[i0 + i, j0 + j, 3]
+        q = work[0, i]
+        x, y, z, w = x + q * a, y + q * b, z + q * c, w + q * d
+    share = 1.0 / w if rational else 1.0
+    return x * share, y * share, z * share
+
+
+@jit_fma_inline
 def _clamp_parameter(knots: Array, degree: int, t: float) -> float:
     """The nearest parameter in the domain; NaN stays NaN."""
     if t < knots[degree]:

@@ -1,24 +1,30 @@
 """The nearest point of a trimmed face to given points."""
 
-from functools import partial
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.numeric.golden_section import least_between
-from toolaxis.numeric.polygons import stations, walk
-from toolaxis.numeric.vectors import as_rows, dot, lengths
+from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.numeric.polygons import slabs, stations, walk
+from toolaxis.numeric.vectors import as_rows
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
+from toolaxis.shape.nearest_kernel import FaceLoop, FaceRange, nearest_along, nearest_inside
+from toolaxis.shape.nearest_numpy import nearest_along_numpy, nearest_inside_numpy
+from toolaxis.shape.nurbs import NurbsSurface
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 #: Nearest samples from which the search sets out, inside and on the border.
-STARTS = 4
-#: Steps at most, the least share of Newton's step that is tried, and the share of a parameter's range below which
-#: a step is nothing.
-_STEPS, _LEAST_SHARE, _NOTHING = 30, 0.005, 1e-13
+STARTS, STARTS_ALONG = 4, 2
+#: How far loops may leave the domain of a surface by rounding, as a share of its range; by how much bounds are rounded.
+_ROUNDED, _ROUNDED_UP = 1e-9, 1.0 + 1e-9
+#: Targets that are looked at before it is asked whether to stop.
+_AT_ONCE = 1024
 
 
 class NearestPoints(NamedTuple):
@@ -54,14 +60,15 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
     **Properties**: (1) the distance is never above that to the nearest sample; (2) inside the face the way to the
     point is normal to the surface; (3) it follows rigid motions and mirrors.
     """
-    targets = as_rows(points, 3, "point")
-    best = _from_border(face, targets, samples)
-    inner = _from_inside(face, targets, samples)
-    if inner is None:
-        return best
-    closer = inner.distance < best.distance
-    return NearestPoints(*(np.where(closer if x.ndim == 1 else closer[:, None], x, y)
-                           for x, y in zip(inner, best, strict=True)))
+    targets = np.ascontiguousarray(as_rows(points, 3, "point"))
+    known = _samples_of(face, samples)
+    uv, least = np.zeros((len(targets), 2)), np.full(len(targets), np.inf)
+    for first in range(0, len(targets), _AT_ONCE):
+        breathe()
+        rows = slice(first, first + _AT_ONCE)
+        _search(face, known, targets[rows], (uv[rows], least[rows]))
+    point = face.evaluate(uv).point
+    return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
 
 
 class _FaceSamples:
@@ -73,6 +80,8 @@ class _FaceSamples:
         Parameters of points inside.
     borders : list of (k,) array
         Positions of points along each loop.
+    compiled : _KernelFace or None
+        The face in the kernels' form; None where they cannot take it.
     """
 
     def __init__(self, face: Face, samples: int) -> None:
@@ -81,14 +90,52 @@ class _FaceSamples:
         self.borders = [stations(loop, ((u1 - u0) / samples, (v1 - v0) / samples)) for loop in face.outline]
         self._inside = _tree(face, self.grid)
         self._along = [_tree(face, walk(loop, at)) for loop, at in zip(face.outline, self.borders, strict=True)]
+        own_numbers = type(face.surface) is NurbsSurface
+        self.compiled = _KernelFace(face, self.borders) if _compiled.available and own_numbers else None
 
-    def starts_inside(self, targets: Array) -> NDArray[np.int64]:
+    def starts_inside(self, targets: Array) -> Index:
         """Numbers of the nearest points inside to each target, (n, k)."""
         return _starts(self._inside, targets)
 
-    def starts_along(self, loop: int, targets: Array) -> NDArray[np.int64]:
+    def starts_along(self, loop: int, targets: Array) -> Index:
         """Numbers of the nearest points of a loop to each target, (n, k)."""
-        return _starts(self._along[loop], targets)
+        return np.ascontiguousarray(_starts(self._along[loop], targets)[:, :STARTS_ALONG])
+
+
+class _KernelFace:
+    """A face in the form that kernels take.
+
+    Attributes
+    ----------
+    range : FaceRange
+    loops : list of FaceLoop
+    """
+
+    def __init__(self, face: Face, borders: list[Array]) -> None:
+        table = slabs(face.outline)
+        self.range = FaceRange(face.bounds, bool(face.trims), table.edges, table.start, table.member,
+                               (table.low, table.height, *table.border))
+        slopes = _greatest_slopes(face)
+        self.loops = [_loop_for_kernels(loop, at, slopes) for loop, at in zip(face.outline, borders, strict=True)]
+
+
+def _greatest_slopes(face: Face) -> Array:
+    """Bounds of |Su| and |Sv| on the whole surface, (2,) mm; infinite where loops leave it."""
+    surface = face.surface
+    domain = np.array(surface.domain)
+    slack = _ROUNDED * np.ptp(domain, axis=1)
+    corners = np.concatenate(face.outline)
+    if ((corners < domain[:, 0] - slack) | (corners > domain[:, 1] + slack)).any():
+        return np.full(2, np.inf)
+    lines = [np.unique(np.concatenate([ends, inner])) for ends, inner in zip(domain, surface.breaks, strict=True)]
+    bounds = derivative_bounds(bezier_nets(surface.data, *lines), np.diff(lines[0]), np.diff(lines[1]), 1)
+    return np.asarray(_ROUNDED_UP * bounds.max(axis=(0, 1)))
+
+
+def _loop_for_kernels(loop: Array, position: Array, slopes: Array) -> FaceLoop:
+    ends = np.append(position, len(loop))
+    way = np.abs(np.diff(walk(loop, ends), axis=0))
+    return FaceLoop(np.ascontiguousarray(loop), ends, _ROUNDED_UP * (way @ slopes))
 
 
 _KNOWN: WeakKeyDictionary[Face, dict[int, _FaceSamples]] = WeakKeyDictionary()
@@ -107,76 +154,39 @@ def _tree(face: Face, uv: Array) -> Any:
     return cKDTree(face.evaluate(uv).point) if len(uv) else None
 
 
-def _starts(tree: Any, targets: Array) -> NDArray[np.int64]:
+def _starts(tree: Any, targets: Array) -> Index:
     """Numbers of the nearest points of a tree to each target, (n, k)."""
     count = min(STARTS, tree.n)
     return np.asarray(tree.query(targets, k=count)[1], dtype=np.int64).reshape(len(targets), count)
 
 
-def _answer(face: Face, targets: Array, uv: Array) -> NearestPoints:
-    point = face.evaluate(uv).point
-    return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
+def _search(face: Face, known: _FaceSamples, targets: Array, out: tuple[Array, Array]) -> None:
+    """Parameters (n, 2) of the nearest points, and their distances (n,): the border's where it is as near."""
+    uv, distance = _search_inside(face, known, targets)
+    _search_along(face, known, targets, out, distance)
+    closer = distance < out[1]
+    out[0][closer], out[1][closer] = uv[closer], distance[closer]
 
 
-def _pick(found: list[NearestPoints]) -> NearestPoints:
-    row, choice = np.arange(len(found[0].distance)), np.argmin([x.distance for x in found], axis=0)
-    return NearestPoints(*(np.stack(parts)[choice, row] for parts in zip(*found, strict=True)))
-
-
-def _from_inside(face: Face, targets: Array, samples: int) -> NearestPoints | None:
-    known = _samples_of(face, samples)
+def _search_inside(face: Face, known: _FaceSamples, targets: Array) -> tuple[Array, Array]:
+    """Nearest points inside; infinitely far where there is no sample to set out from."""
+    uv, least = np.zeros((len(targets), 2)), np.full(len(targets), np.inf)
     if not len(known.grid):
-        return None
-    return _pick([_descend(face, targets, known.grid[column]) for column in known.starts_inside(targets).T])
+        return uv, least
+    starts = known.starts_inside(targets)
+    if known.compiled is None:
+        return nearest_inside_numpy(face, targets, known.grid, starts)
+    nearest_inside(face.surface.data, known.compiled.range, targets, known.grid, starts, (uv, least))
+    return uv, least
 
 
-def _descend(face: Face, targets: Array, uv: Array) -> NearestPoints:
-    """Newton steps down the squared distance, halved until they descend, as long as they stay on the face."""
-    u0, u1, v0, v1 = face.bounds
-    low, high = np.array([u0, v0]), np.array([u1, v1])
-    best, share, rows = _answer(face, targets, uv), np.ones(len(uv)), np.arange(len(uv))
-    for _ in range(_STEPS):
-        start = best.uv[rows]
-        trial = np.clip(start + share[rows, None] * _newton(face, targets[rows], start), low, high)
-        found = _answer(face, targets[rows], trial)
-        better = (found.distance < best.distance[rows]) & face.contains(trial)
-        for mine, theirs in zip(best, found, strict=True):
-            mine[rows[better]] = theirs[better]
-        share[rows] = np.where(better, 1.0, 0.5 * share[rows])
-        moved = (np.abs(trial - start) > _NOTHING * (high - low)).any(axis=1)
-        rows = rows[moved & (share[rows] >= _LEAST_SHARE)]
-        if not len(rows):
-            break
-    return best
-
-
-def _newton(face: Face, targets: Array, uv: Array) -> Array:
-    """Steps of Newton's method, of Gauss and Newton's where the former would climb."""
-    d = face.evaluate(uv)
-    gap = d.point - targets
-    fu, fv = dot(gap, d.su), dot(gap, d.sv)
-    e, f, g = dot(d.su, d.su), dot(d.su, d.sv), dot(d.sv, d.sv)
-    a, b, c = e + dot(gap, d.suu), f + dot(gap, d.suv), g + dot(gap, d.svv)
-    full = (a > 0) & (a * c - b * b > 1e-12 * e * g)
-    a, b, c = np.where(full, a, e * (1 + 1e-9)), np.where(full, b, f), np.where(full, c, g * (1 + 1e-9))
-    determinant = a * c - b * b
-    step = np.stack([b * fv - c * fu, b * fu - a * fv], axis=1)
-    return np.asarray(step / np.where(determinant > 0, determinant, np.inf)[:, None])
-
-
-def _from_border(face: Face, targets: Array, samples: int) -> NearestPoints:
-    found, known = [], _samples_of(face, samples)
+def _search_along(face: Face, known: _FaceSamples, targets: Array, out: tuple[Array, Array], enough: Array) -> None:
+    """Nearest points of the border, as far as they are as near as is enough."""
     for number, loop in enumerate(face.outline):
-        position, start = known.borders[number], known.starts_along(number, targets)
-        gap = partial(_gap, face, targets, loop)
-        for column in start.T[:2]:
-            before = np.where(column > 0, position[column - 1], position[-1] - len(loop))
-            after = np.append(position, len(loop))[column + 1]
-            for low, high in ((before, position[column]), (position[column], after)):
-                at, _ = least_between(gap, low, high)
-                found.append(_answer(face, targets, walk(loop, at)))
-    return _pick(found)
-
-
-def _gap(face: Face, targets: Array, loop: Array, at: Array) -> Array:
-    return lengths(face.evaluate(walk(loop, at)).point - targets)
+        starts = known.starts_along(number, targets)
+        if known.compiled is not None:
+            nearest_along(face.surface.data, known.compiled.loops[number], targets, starts, out, enough)
+            continue
+        uv, distance = nearest_along_numpy(face, targets, (loop, known.borders[number]), starts)
+        nearer = distance < out[1]
+        out[0][nearer], out[1][nearer] = uv[nearer], distance[nearer]

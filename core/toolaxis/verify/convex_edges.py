@@ -46,7 +46,8 @@ class End(NamedTuple):
 
 
 def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[tuple[Face, ...], tuple[Face, ...]],
-                   cut: Callable[[Array, Array, Array], Array], allowed: float) -> tuple[Array, NDArray[np.bool_]]:
+                   cut: Callable[[Array, Array, Array], Array], allowed: float,
+                   walls: Callable[[Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
     """How deep the cut lies below the part's surface, for rays of a face; the rays' own depth far from edges.
 
     Parameters
@@ -62,6 +63,8 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
         Depths laid bare, mm, of rays with given feet and normals that are followed to given depths.
     allowed : float
         Depth that a gouge may have, mm.
+    walls : callable
+        How far rays with given feet and normals may be followed to the middle of a wall, mm.
 
     Returns
     -------
@@ -91,8 +94,25 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
             # What lies beyond the middle is nearer to the other face, and may be air on its side.
             asked = np.maximum(middle, _LEAST)
             found = cut(feet.reshape(-1, 3), directions.reshape(-1, 3), asked.reshape(-1)).reshape(asked.shape)
-            told[rows] = np.where(middle > 0.0, np.minimum(found, middle), 0.0).max(axis=1)
+            found = np.where(middle > 0.0, np.minimum(found, middle), 0.0)
+            _follow_in_walls((feet, directions), found, cut, allowed, walls)
+            told[rows] = found.max(axis=1)
     return told, near
+
+
+def _follow_in_walls(rays: tuple[Array, Array], found: Array, cut: Callable[[Array, Array, Array], Array],
+                     allowed: float, walls: Callable[[Array, Array], Array]) -> None:
+    """Lower the depths of rays beside an edge that cross the middle of a wall, (k, steps): beyond it they belong to the
+    wall's other side, and behind that to nothing of the part."""
+    over = found > allowed
+    feet, directions, depth = rays[0][over], rays[1][over], found[over]
+    if not len(depth):
+        return
+    middle = np.maximum(walls(feet, directions), _LEAST)
+    thin = middle < depth
+    if thin.any():
+        depth[thin] = cut(feet[thin], directions[thin], middle[thin])
+        found[over] = depth
 
 
 def _may_lie_within(reach: float, other: Face, foot: Array) -> NDArray[np.bool_]:

@@ -55,7 +55,7 @@ class Depths:
         point, normal = rays[0][deep], rays[1][deep]
         own = tuple(one for one in self._of_the_part() if one is not face)
         told, near = depth_at_edges(face, (point, normal, left.gouge[deep]), (own, task.surroundings), self._laid_bare,
-                                    task.tolerance.gouge)
+                                    task.tolerance.gouge, self._walls)
         self._in_walls((point, normal), left, deep, ~near)
         left.gouge[deep[near]] = told[near]
         higher = left.gouge[deep] > task.tolerance.gouge
@@ -68,11 +68,15 @@ class Depths:
     def _laid_bare(self, feet: Array, ways: Array, depth: Array) -> Array:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
+    def _walls(self, feet: Array, ways: Array) -> Array:
+        """How far rays may be followed to the middle of a wall, mm."""
+        return wall_depth(feet + self.task.allowance * ways, ways, self._of_the_part(), self.task.depth)
+
     def _in_walls(self, rays: tuple[Array, Array], left: RestMaterial, deep: NDArray[np.int64],
                   asked: NDArray[np.bool_]) -> None:
         """Follow rays in thin walls to their middle only: each half belongs to its own side."""
         foot, normal = rays[0][asked] + self.task.allowance * rays[1][asked], rays[1][asked]
-        limit = wall_depth(foot, normal, self._of_the_part(), self.task.depth)
+        limit = self._walls(rays[0][asked], normal)
         thin = limit < self.task.depth
         if thin.any():
             rows = deep[asked][thin]

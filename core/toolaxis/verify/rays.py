@@ -23,6 +23,9 @@ _FINE = 129
 #: Places of the grid that are tried at a time, whatever part of them lies on the face.
 _TRIED = 200_000
 
+#: Share of the range of v by which rows and edges may miss each other by rounding.
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class Rays:
@@ -114,35 +117,76 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
     length = _lengths(v, speed_v)
-    rows = _parts(length, spacing)
-    middle = np.interp((np.arange(rows) + 0.5) / rows, length / length[-1], v)
-    line = np.stack(np.meshgrid(middle, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
-    speed_u = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(rows, _FINE)
-    found, tried, done = [], [], 0
-    for row in range(rows):
-        across = _lengths(u, speed_u[row])
-        count = _parts(across, spacing)
-        k = np.arange(done + 1, done + count + 1)
-        at_u, step_u = _place_at_shares(u, across, (np.arange(count) + np.mod(0.5 + k * _R2[0], 1.0)) / count)
+    rows = int(_parts(length, spacing))
+    across = _lengths_across(face, np.interp((np.arange(rows) + 0.5) / rows, length / length[-1], v), u)
+    counts = _parts(across, spacing)
+    before = np.cumsum(counts) - counts
+    low, high = _reach_of_rows(face, np.interp(np.arange(rows + 1) / rows, length / length[-1], v))
+    found, tried = [np.empty((0, 3))], [np.empty((0, 3))]
+    for row in np.flatnonzero(low <= high):
+        count, mark = counts[row], across[row] / across[row, -1]
+        # A place lies in its cell but for rounding: one more is tried at either end.
+        first, last = np.floor(np.interp([low[row], high[row]], u, mark) * count)
+        column = np.arange(max(int(first) - 1, 0), min(int(last) + 1, count - 1) + 1)
+        k = before[row] + 1 + column
+        at_u, step_u = _place_at_shares(u, across[row], (column + np.mod(0.5 + k * _R2[0], 1.0)) / count)
         at_v, step_v = _place_at_shares(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
         tried.append(np.column_stack([at_u, at_v, step_u * step_v / (count * rows)]))
-        done += count
-        if sum(map(len, tried)) >= _TRIED or row == rows - 1:
-            places = np.concatenate(tried)
-            found.append(places[face.contains(places[:, :2])])
-            tried = []
-    places = np.concatenate(found)
+        if sum(map(len, tried)) >= _TRIED:
+            found.append(_places_on(face, tried))
+            tried = [np.empty((0, 3))]
+    places = np.concatenate([*found, _places_on(face, tried)])
     return places[:, :2], places[:, 2]
 
 
+def _places_on(face: Face, tried: list[Array]) -> Array:
+    """Those of some places (u, v, area) that lie on a face."""
+    places = np.concatenate(tried)
+    return np.asarray(places[face.contains(places[:, :2])])
+
+
+def _lengths_across(face: Face, middles: Array, u: Array) -> Array:
+    """Lengths along lines of constant v up to values of u, (rows, k) mm."""
+    parts, at_once = [], max(1, _TRIED // len(u))
+    for first in range(0, len(middles), at_once):
+        some = middles[first:first + at_once]
+        line = np.stack(np.meshgrid(some, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
+        speed = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(len(some), len(u))
+        parts.append(_lengths(u, speed))
+    return np.concatenate(parts)
+
+
+def _reach_of_rows(face: Face, lines: Array) -> tuple[Array, Array]:
+    """Least and greatest u of a face in each row between lines of constant v; the least is above the greatest one
+    in rows that it does not come to.
+
+    Whatever lies on the face has the edges of a loop on both sides, which cross its row.
+    """
+    low, high = np.full(len(lines) - 1, np.inf), np.full(len(lines) - 1, -np.inf)
+    rounding = _ROUNDING * (lines[-1] - lines[0])
+    for loop in face.outline:
+        ends = np.stack([loop, np.roll(loop, -1, axis=0)])
+        (left, bottom), (right, top) = ends.min(axis=0).T, ends.max(axis=0).T
+        first = np.clip(np.searchsorted(lines, bottom - rounding, side="right") - 1, 0, len(low) - 1)
+        last = np.clip(np.searchsorted(lines, top + rounding, side="right") - 1, 0, len(low) - 1)
+        crossed = last - first + 1
+        edge = np.repeat(np.arange(len(loop)), crossed)
+        row = np.repeat(first - np.cumsum(crossed) + crossed, crossed) + np.arange(len(edge))
+        np.minimum.at(low, row, left[edge])
+        np.maximum.at(high, row, right[edge])
+    return low, high
+
+
 def _lengths(t: Array, speed: Array) -> Array:
-    """Length along a line of known speed, strictly increasing from 0."""
-    floor = np.maximum(speed, 1e-9 * max(float(speed.max()), 1e-300))
-    return np.append(0.0, np.cumsum(0.5 * (floor[1:] + floor[:-1]) * np.diff(t)))
+    """Lengths along lines of known speeds, (..., k), strictly increasing from 0."""
+    floor = np.maximum(speed, 1e-9 * np.maximum(speed.max(axis=-1, keepdims=True), 1e-300))
+    steps = 0.5 * (floor[..., 1:] + floor[..., :-1]) * np.diff(t)
+    return np.concatenate([np.zeros_like(steps[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
 
 
-def _parts(length: Array, spacing: float) -> int:
-    return max(1, int(np.ceil(length[-1] / spacing - 1e-9)))
+def _parts(length: Array, spacing: float) -> NDArray[np.int64]:
+    """Number of cells along lines of such lengths."""
+    return np.maximum(1, np.ceil(length[..., -1] / spacing - 1e-9)).astype(np.int64)
 
 
 def _place_at_shares(t: Array, length: Array, share: Array) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ counts.
 
 from collections.abc import Sequence
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,39 +46,56 @@ def steps_of(face: Face, lower: Sequence[Face], around: Array | None = None) -> 
     lower : sequence of Face
         Faces that the cutter may touch.
     around : (m, 3) array, optional
-        Places, mm: only borders as near to one of them as steps count are looked at; all of them unless given.
+        Places, mm: only what counts near one of them is asked for; all unless given.
     """
     from scipy.spatial import cKDTree
 
-    found = [SeamSteps(np.empty((0, 3)), np.empty(0))]
-    for loop in face.outline:
-        uv = loop_points(face, loop, SPACING)
-        point = face.evaluate(uv).point
-        along = np.roll(point, -1, axis=0) - np.roll(point, 1, axis=0)
-        rows = np.arange(len(uv))
-        if around is not None:
-            far = cKDTree(around).query(point, distance_upper_bound=2 * REACH + SPACING)[0]
-            rows = np.flatnonzero(np.isfinite(far))
-        for other in lower:
-            if other is not face:
-                found.append(_steps_over(other, _Border(face, uv[rows], point[rows], along[rows])))
-    return SeamSteps(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+    found = [_steps_between(face, other) for other in lower if other is not face]
+    steps = SeamSteps(np.concatenate([np.empty((0, 3)), *(one.point for one in found)]),
+                      np.concatenate([np.empty(0), *(one.height for one in found)]))
+    if around is None or not len(steps.height):
+        return steps
+    far = cKDTree(around).query(steps.point, distance_upper_bound=2 * REACH + SPACING)[0]
+    near = np.isfinite(far)
+    return SeamSteps(steps.point[near], steps.height[near])
+
+
+#: What is known of pairs of faces, the higher one first: many operations ask for the steps of the same faces.
+_KNOWN: WeakKeyDictionary[Face, WeakKeyDictionary[Face, SeamSteps]] = WeakKeyDictionary()
+_BORDERS: WeakKeyDictionary[Face, "_Border"] = WeakKeyDictionary()
+
+
+def _steps_between(face: Face, other: Face) -> SeamSteps:
+    """Where a face stands out over one other face, worked out once."""
+    known = _KNOWN.setdefault(face, WeakKeyDictionary())
+    if other not in known:
+        known[other] = _steps_over(other, face, _border_of(face))
+    return known[other]
 
 
 class _Border(NamedTuple):
     """Places on a face's border: parameters (k, 2), points, and directions along it (k, 3)."""
 
-    face: Face
     uv: Array
     point: Array
     along: Array
 
     def rows(self, which: NDArray[np.int64]) -> "_Border":
-        return _Border(self.face, self.uv[which], self.point[which], self.along[which])
+        return _Border(self.uv[which], self.point[which], self.along[which])
 
 
-def _steps_over(other: Face, border: _Border) -> SeamSteps:
-    """Places of a border that stand out over one other face."""
+def _border_of(face: Face) -> _Border:
+    """Places on all loops of a face, worked out once."""
+    if face not in _BORDERS:
+        loops = [loop_points(face, loop, SPACING) for loop in face.outline]
+        points = [face.evaluate(uv).point for uv in loops]
+        along = [np.roll(point, -1, axis=0) - np.roll(point, 1, axis=0) for point in points]
+        _BORDERS[face] = _Border(*(np.concatenate(parts) for parts in (loops, points, along)))
+    return _BORDERS[face]
+
+
+def _steps_over(other: Face, face: Face, border: _Border) -> SeamSteps:
+    """Places of a face's border that stand out over another face."""
     near = ((border.point > other.box[0] - NEAR) & (border.point < other.box[1] + NEAR)).all(axis=1)
     border = border.rows(np.flatnonzero(near))
     if not len(border.uv):
@@ -87,13 +105,13 @@ def _steps_over(other: Face, border: _Border) -> SeamSteps:
     height = dot(border.point - foot.point, up)
     found = (foot.distance < NEAR) & (height >= SMALLEST) & (height <= GREATEST)
     rows = np.flatnonzero(found)
-    rows = rows[_goes_down(border.rows(rows), up[rows])]
+    rows = rows[_goes_down(face, border.rows(rows), up[rows])]
     return SeamSteps(border.point[rows], height[rows])
 
 
-def _goes_down(border: _Border, up: Array) -> NDArray[np.bool_]:
-    """Whether the face does not rise over the other one beyond its border: they meet smoothly or over a convex edge."""
-    face, normal = border.face, border.face.normal(border.uv)
+def _goes_down(face: Face, border: _Border, up: Array) -> NDArray[np.bool_]:
+    """Whether a face does not rise over another one beyond its border: they meet smoothly or over a convex edge."""
+    normal = face.normal(border.uv)
     across = np.cross(border.along, normal)
     sound = np.linalg.norm(across, axis=1) > 0.0
     across = unit(np.where(sound[:, None], across, [1.0, 0.0, 0.0]))

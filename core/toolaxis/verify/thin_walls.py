@@ -1,6 +1,8 @@
 """Thin walls: how far a ray may be followed inwards before it is nearer to the other side of the part."""
 
 from math import sqrt
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,22 +55,40 @@ def wall_depth(foot: Array, normal: Array, faces: tuple[Face, ...], depth: float
 
 def _first_guess(face: Face, foot: Array, normal: Array, depth: float) -> Array:
     """About how far along rays a face looks the other way, mm; infinite where it does not."""
-    from scipy.spatial import cKDTree
-
     start = np.full(len(foot), np.inf)
     rays = _places(face)
     radius = np.hypot(0.5 * depth, 1.5 * rays.spacing)
-    for i, near in enumerate(cKDTree(rays.point).query_ball_point(foot - 0.5 * depth * normal, radius)):
-        inwards = (foot[i] - rays.point[near]) @ normal[i]
-        wall = (inwards > 0) & (rays.normal[near] @ normal[i] < AGAINST)
-        if wall.any():
-            start[i] = min(float(np.median(inwards[wall])), depth)
+    near = _tree_of(face).query_ball_point(foot - 0.5 * depth * normal, radius)
+    counts = np.array([len(places) for places in near])
+    if not counts.any():
+        return start
+    ray, place = np.repeat(np.arange(len(foot)), counts), np.concatenate(near).astype(np.int64)
+    inwards = dot(foot[ray] - rays.point[place], normal[ray])
+    wall = (inwards > 0) & (dot(rays.normal[place], normal[ray]) < AGAINST)
+    ray, inwards = ray[wall], inwards[wall]
+    order = np.lexsort((inwards, ray))
+    ray, inwards = ray[order], inwards[order]
+    which, first, count = np.unique(ray, return_index=True, return_counts=True)
+    median = 0.5 * (inwards[first + (count - 1) // 2] + inwards[first + count // 2])
+    start[which] = np.minimum(median, depth)
     return start
 
 
 def _places(face: Face) -> Rays:
     """Places all over a face, fewer on a large one than it is judged at."""
     return face_rays(face, max(SPACING, sqrt(face.area) / _SIDE))
+
+
+_TREES: WeakKeyDictionary[Face, Any] = WeakKeyDictionary()
+
+
+def _tree_of(face: Face) -> Any:
+    """The places of a face in a tree, which many rays ask."""
+    from scipy.spatial import cKDTree
+
+    if face not in _TREES:
+        _TREES[face] = cKDTree(_places(face).point)
+    return _TREES[face]
 
 
 def _middle(face: Face, foot: Array, normal: Array, start: Array) -> Array:
