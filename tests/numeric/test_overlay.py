@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
@@ -9,6 +10,8 @@ from toolaxis.numeric.polygon_boolean import (
     _crossings,
     _find_crossings,
     _find_crossings_plainly,
+    cut_spikes,
+    divide_nearly,
     divide_polygon,
     unite_polygons,
     without,
@@ -134,3 +137,27 @@ def test_the_kernel_finds_the_crossings_of_its_plain_twin() -> None:
     assert np.abs(found - plain).max() < 1e-12
     few, shares, points = _crossings((one,), (other,))
     assert np.array_equal(few[:, 0], plain[:, 0]) and len(shares) == len(points) == len(plain)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_polygon_with_a_spike_divides_as_without_it(seed: int) -> None:
+    """Found: a piece of a skin ran along a border and back; nothing was divided by it, and a whole face counted as its.
+    """
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2 * np.pi)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    base, tip = np.array([8.0, rng.uniform(0, 4)]), rng.uniform(2.5, 3.5, 2)
+    # A slit from the border of the piece across that of the square.
+    piece = np.array([[2.0, -1.0], [8.0, -1.0], base, tip, base, base, [8.0, 5.0], [2.0, 5.0]]) @ turn
+    whole = SQUARE @ turn
+    with pytest.raises(InvalidInput):
+        divide_polygon((whole,), (piece,))
+    inside, outside = divide_nearly((whole,), (piece,))
+    wanted = shapely.Polygon(np.delete(piece, [3, 4, 5], axis=0)).intersection(shapely.Polygon(whole)).area
+    assert area(inside) == pytest.approx(wanted, rel=1e-5)
+    assert area(inside) + area(outside) == pytest.approx(16.0, rel=1e-9)
+    assert len(cut_spikes(piece)) == 5 and len(cut_spikes(whole)) == 4
+
+
+def test_nothing_is_left_of_a_loop_that_only_goes_there_and_back() -> None:
+    assert len(cut_spikes(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]]))) < 3

@@ -17,6 +17,8 @@ Loops = tuple[Array, ...]
 Corner = tuple[float, float]
 Edge = tuple[Corner, Corner]
 
+#: Share of a loop's size up to which corners coincide and spikes have no width.
+_SPIKE = 1e-8
 #: Shares of its size by which a polygon is moved so that no corner lies on another one's border, and the way.
 _MOVES, _ASLANT = (0.0, 1.7e-7, -3.1e-7, 7.3e-7, -1.3e-6), np.array([0.8, 0.6])
 #: Rows of one polygon's edges that are held against all of the other's at a time.
@@ -70,6 +72,8 @@ def divide_polygon(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
 def divide_nearly(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     """A polygon divided by another one, which is moved by a millionth of its size where a corner lies on a border.
 
+    Where that is not enough, spikes without width are cut off both first: they cross a border twice in one place.
+
     Parameters
     ----------
     loops, by
@@ -90,10 +94,44 @@ def divide_nearly(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     if not loops or not by:
         return (), loops
     size = np.ptp(np.concatenate(by), axis=0).max()
+    for share in _MOVES:
+        with suppress(InvalidInput):
+            return divide_polygon(loops, tuple(loop + share * size * _ASLANT for loop in by))
+    loops, by = (tuple(kept for loop in some if len(kept := cut_spikes(loop)) > 2) for some in (loops, by))
     for share in _MOVES[:-1]:
         with suppress(InvalidInput):
             return divide_polygon(loops, tuple(loop + share * size * _ASLANT for loop in by))
     return divide_polygon(loops, tuple(loop + _MOVES[-1] * size * _ASLANT for loop in by))
+
+
+def cut_spikes(loop: Array) -> Array:
+    """A loop without corners that coincide with the one before, and without those at which it turns back on itself.
+
+    Parameters
+    ----------
+    loop : (n, 2) array
+        Closed, without repeated end points.
+
+    Returns
+    -------
+    (m, 2) array
+        Fewer than three corners where the loop holds no area.
+    """
+    least = _SPIKE * float(np.ptp(loop, axis=0).max())
+    while len(loop) > 2:
+        into = loop - np.roll(loop, 1, axis=0)
+        out = np.roll(into, -1, axis=0)
+        lengths = np.hypot(*into.T), np.hypot(*out.T)
+        back = (into * out).sum(axis=1) < 0
+        width = np.abs(into[:, 0] * out[:, 1] - into[:, 1] * out[:, 0]) / np.maximum(*lengths).clip(least)
+        gone = np.flatnonzero((lengths[0] <= least) | (back & (width <= least)))
+        if not len(gone):
+            break
+        # One of two neighbours at a time: cutting off the one may part the other from its spike.
+        kept = np.ones(len(loop), dtype=bool)
+        kept[gone[np.diff(gone, prepend=-2) > 1]] = False
+        loop = loop[kept]
+    return loop
 
 
 def _edges(loops: Loops) -> tuple[Array, Array]:
