@@ -1,12 +1,10 @@
 """One axis put to the proof: its passes made, completed and proven, and laid closer where too much would stay high."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.queries import keeps_limits
@@ -20,7 +18,6 @@ from toolaxis.path.pass_pattern import pattern_name
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, may_stay
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.zone import Zone
 from toolaxis.search.face_problem import CROSSING, FaceProblem
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import machine_violation
@@ -44,8 +41,6 @@ _TOLD = 1.0
 #: Where that is too much, passes are laid for a little less than the share of the scallop height that brings down what
 #: was seen, for less by a step where that did not do, and never for less than the last share.
 _CLOSER, _STEP, _CLOSEST = 0.97, 0.93, 0.6
-#: How far from what is far too high places tell nothing of ridges, in half widths of the narrowest strip on a plane.
-_ASIDE = 3.0
 
 
 class CheckedCandidate(NamedTuple):
@@ -91,11 +86,8 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if not len(placed.pieces):
         why = Violation(CUTTER, 0.0, words=nothing_to_cut(job.worth.face))
         return CheckedCandidate(one, Orientation(None, feed), PathCheck(why), None)
-    path, known = job.traced(placed), ProvenMotions()
-    closer = _find_closer_share(job, path)
-    if closer is not None and job.laid_for > _CLOSEST:  # that is told before all is proven
-        return check_candidate(replace(job, laid_for=max(closer, _CLOSEST)), one)
-    job, placed, plain, proof = _prove_without_refused(job, placed, path, known)
+    known = ProvenMotions()
+    job, placed, plain, proof = _prove_without_refused(job, placed, known)
     made = FurtherPasses(placed, plain, ()) if proof.witness is not None else job.completed(placed, plain)
     if made.placed is not placed:
         of_all = _prove_path(job, made.path, known)
@@ -104,7 +96,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         else:  # further passes are no reason to refuse an axis
             made = FurtherPasses(placed, plain, job.left_by(plain, placed))
     if proof.witness is None:
-        closer = _find_closer_share(job, made.path, made.zones)
+        closer = _find_closer_share(job, made)
         if closer is not None and job.laid_for > _CLOSEST:
             return check_candidate(replace(job, laid_for=max(closer, _CLOSEST)), one)
         if closer is not None:
@@ -153,30 +145,25 @@ def _find_blocked_way_up(job: FaceProblem, axis: Array) -> Violation | None:
     return None if free.any() else stuck
 
 
-def _find_closer_share(job: FaceProblem, path: ToolPath, zones: Sequence[Zone] | None = None) -> float | None:
+def _find_closer_share(job: FaceProblem, made: FurtherPasses) -> float | None:
     """Share of the scallop height for which passes have to be laid so that no more stays high than may.
 
     None where those that were made do.  That is told from samples, as ridges between passes are thinner than any cell;
     only where strips are measured on what stands for a skin can too much stay.  A ridge is as high as the square of the
-    width of its strip, and so in proportion to the height for which that strip was laid.  Where the zones are not known
-    that passes leave, places around what is far too high are left aside.
+    width of its strip, and so in proportion to the height for which that strip was laid.
     """
     worth = job.worth
     if worth.face.surface.stand_in is None:
         return None
     uv = _scatter_places(worth.face, _SAMPLES)
-    for zone in zones or ():
+    for zone in made.zones:
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
     if not len(uv):
         return None
     d = worth.face.evaluate(uv)
     area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
     limit = FACTOR * worth.scallop
-    most = _TOLD * worth.scallop
-    above = Excess(worth.face, worth.tool, path, worth.allowance + limit)(uv, most)
-    if zones is None:
-        beside = _is_near(d.point, d.point[above >= most], _ASIDE * job.aside)
-        area, above = area[~beside], above[~beside]
+    above = Excess(worth.face, worth.tool, made.path, worth.allowance + limit)(uv, _TOLD * worth.scallop)
     order = np.argsort(-above, kind="stable")
     may = int(np.searchsorted(np.cumsum(area[order]), OVERLOOKED * area.sum(), side="right"))
     highest = float(above[order[may]]) if may < len(order) else 0.0
@@ -184,13 +171,6 @@ def _find_closer_share(job: FaceProblem, path: ToolPath, zones: Sequence[Zone] |
         return None
     step = 1.0 if job.laid_for == 1 else _STEP
     return job.laid_for * min(step, _CLOSER * limit / (limit + highest))
-
-
-def _is_near(points: Array, others: Array, distance: float) -> NDArray[np.bool_]:
-    """Which points, (n, 3) mm, are no farther than a distance from one of others."""
-    if not len(others):
-        return np.zeros(len(points), dtype=bool)
-    return np.asarray(cKDTree(others).query(points, distance_upper_bound=distance)[0] < np.inf)
 
 
 def _scatter_places(face: Face, count: int) -> Array:
@@ -209,9 +189,10 @@ def _scatter_places(face: Face, count: int) -> Array:
     return np.concatenate(found)[:count]
 
 
-def _prove_without_refused(job: FaceProblem, placed: Layout, path: ToolPath,
+def _prove_without_refused(job: FaceProblem, placed: Layout,
                            known: ProvenMotions) -> tuple[FaceProblem, Layout, ToolPath, PathCheck]:
     """Passes and their proof; few motions that it refuses are left out, as are their contacts from then on."""
+    path = job.traced(placed)
     proof = _prove_path(job, path, known)
     for _ in range(_LEFT_OUT):
         if not len(proof.blocked):
