@@ -92,3 +92,16 @@ def test_what_no_tool_reaches_costs_nothing_and_is_no_reason_for_a_tool() -> Non
     found = choose_tools([chains_of(hidden, 1.0), chains_of(half, 1.0)], 5.0)
     assert found.tools == (0,) and [one.tools for one in found.chains] == [(), (0,)]
     assert choose_tools([chains_of(hidden, 1.0)], 5.0).tools == ()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_axis_of_the_first_tool_is_the_one_under_which_it_reaches_so_much(seed: int) -> None:
+    """It is the axis from which the search begins that the chain was priced for."""
+    given = prices(np.random.default_rng(seed), 4)
+    reached = np.isfinite(given.seconds)
+    for chain in chains_of(given, 2.0):
+        own = reached[chain.tools[0]]
+        share = own[chain.axis] @ given.area / given.area.sum()
+        assert share == pytest.approx(chain.share)
+        assert share >= 0.97 * (own @ given.area).max() / given.area.sum()
+    assert ToolChain((), 0.0, 0.0).axis == -1
