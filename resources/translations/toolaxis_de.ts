@@ -135,14 +135,6 @@
    <translation>Fläche {} (gedrehte Kopie)</translation>
   </message>
   <message>
-   <source>Faces</source>
-   <translation>Flächen</translation>
-  </message>
-  <message>
-   <source>Faces: {}</source>
-   <translation>Flächen: {}</translation>
-  </message>
-  <message>
    <source>Finishing {}</source>
    <translation>Schlichten {}</translation>
   </message>
@@ -687,10 +679,6 @@
    <translation>Bibliotheksdatei...</translation>
   </message>
   <message>
-   <source>machine {}</source>
-   <translation>Maschine {}</translation>
-  </message>
-  <message>
    <source>making passes</source>
    <translation>Bahnen werden gemacht</translation>
   </message>
@@ -827,6 +815,10 @@
    <translation>{} nicht begonnen</translation>
   </message>
   <message>
+   <source>{} of {}</source>
+   <translation>{} von {}</translation>
+  </message>
+  <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
@@ -857,6 +849,10 @@
   <message>
    <source>{} operations: plan.json and their CL files are written.</source>
    <translation>{} Operationen: plan.json und ihre CL-Dateien werden geschrieben.</translation>
+  </message>
+  <message>
+   <source>{} parts</source>
+   <translation>{} Teilen</translation>
   </message>
   <message>
    <source>{} proven out of reach</source>
@@ -1175,10 +1171,6 @@
    <translation>Aufmaße auf einzelnen Flächen an Stelle dessen auf dem Reiter Auftrag, in mm nach den Nummern der Flächen.</translation>
   </message>
   <message>
-   <source>Allowed</source>
-   <translation>Erlaubt</translation>
-  </message>
-  <message>
    <source>Along the parameters of the face; in parallel planes that contain the tool axis; following the scallop height, so that passes lie as far apart as their strips are wide; or whichever of the first and the third is shorter. All but the first need fixed axes.</source>
    <translation>Längs der Parameter der Fläche; in parallelen Ebenen, in denen die Werkzeugachse liegt; der Rillenhöhe folgend, sodass die Bahnen so weit auseinander liegen, wie ihre Streifen breit sind; oder die kürzere von erster und dritter Art. Alle außer der ersten brauchen feste Achsen.</translation>
   </message>
@@ -1259,6 +1251,10 @@
    <translation>Flächen</translation>
   </message>
   <message>
+   <source>Faces to machine</source>
+   <translation>Zu bearbeitende Flächen</translation>
+  </message>
+  <message>
    <source>Feed locked</source>
    <translation>Vorschub gesperrt</translation>
   </message>
@@ -1269,6 +1265,10 @@
   <message>
    <source>Feed rate of the cutting motion.</source>
    <translation>Vorschub der Schnittbewegung.</translation>
+  </message>
+  <message>
+   <source>Filter: Face12, or &lt; 5 for small faces</source>
+   <translation>Filter: Face12, oder &lt; 5 für kleine Flächen</translation>
   </message>
   <message>
    <source>Flat end mill</source>
@@ -1383,16 +1383,12 @@
    <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
-   <source>Limits</source>
-   <translation>Grenzen</translation>
-  </message>
-  <message>
-   <source>Limits of the tool axis</source>
-   <translation>Grenzen der Werkzeugachse</translation>
-  </message>
-  <message>
    <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>
    <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
+  </message>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
   </message>
   <message>
    <source>Machining tolerance: how far the finished surface may be cut too deep.</source>
@@ -1471,16 +1467,16 @@
    <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
   </message>
   <message>
-   <source>Plan with</source>
-   <translation>Planen mit</translation>
-  </message>
-  <message>
    <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
    <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
   </message>
   <message>
    <source>Radius of the rounded corner.</source>
    <translation>Radius der gerundeten Ecke.</translation>
+  </message>
+  <message>
+   <source>Rates</source>
+   <translation>Vorschub und Drehzahl</translation>
   </message>
   <message>
    <source>Remove</source>
@@ -1525,6 +1521,10 @@
   <message>
    <source>Shape of the cutter's end.</source>
    <translation>Form des Fräserendes.</translation>
+  </message>
+  <message>
+   <source>Shows only the faces whose name has this text, or whose area is less than a number: &lt; 5. Remove then takes the marked ones off the list, Ctrl+A marks all that are shown.</source>
+   <translation>Zeigt nur die Flächen, deren Name diesen Text enthält oder deren Inhalt kleiner als eine Zahl ist: &lt; 5. Entfernen nimmt dann die markierten von der Liste, Strg+A markiert alle gezeigten.</translation>
   </message>
   <message>
    <source>Spindle</source>
@@ -1577,6 +1577,10 @@
   <message>
    <source>The faces to machine; each gets a tool axis of its own.</source>
    <translation>Die zu bearbeitenden Flächen; jede bekommt eine eigene Werkzeugachse.</translation>
+  </message>
+  <message>
+   <source>The machine whose rotary axes must reach the tool axis, or limits of your own: a cone, or ranges of two angles.</source>
+   <translation>Die Maschine, deren Drehachsen die Werkzeugachse erreichen müssen, oder eigene Grenzen: ein Kegel oder Bereiche zweier Winkel.</translation>
   </message>
   <message>
    <source>The rest of the part is always kept clear of; ticked bodies too.</source>
@@ -1667,20 +1671,24 @@
    <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
   </message>
   <message>
-   <source>Which tool axes are allowed: all, those in a cone, those in ranges of two angles, or those of a machine.</source>
-   <translation>Welche Werkzeugachsen erlaubt sind: alle, die in einem Kegel, die in Bereichen zweier Winkel oder die einer Maschine.</translation>
-  </message>
-  <message>
    <source>along parameters</source>
    <translation>längs der Parameter</translation>
   </message>
   <message>
-   <source>any axis</source>
-   <translation>jede Achse</translation>
+   <source>any machine</source>
+   <translation>beliebige Maschine</translation>
   </message>
   <message>
    <source>any number of tools</source>
    <translation>beliebig viele Werkzeuge</translation>
+  </message>
+  <message>
+   <source>any, axis within a cone</source>
+   <translation>beliebig, Achse in einem Kegel</translation>
+  </message>
+  <message>
+   <source>any, tilt and turn limited</source>
+   <translation>beliebig, Neigung und Drehung begrenzt</translation>
   </message>
   <message>
    <source>at most</source>
@@ -1709,10 +1717,6 @@
   <message>
    <source>climb</source>
    <translation>Gleichlauf</translation>
-  </message>
-  <message>
-   <source>cone</source>
-   <translation>Kegel</translation>
   </message>
   <message>
    <source>conventional</source>
@@ -1769,10 +1773,6 @@
   <message>
    <source>strip width and roughness</source>
    <translation>Streifenbreite und Rauheit</translation>
-  </message>
-  <message>
-   <source>tilt and turn</source>
-   <translation>Neigung und Drehung</translation>
   </message>
   <message>
    <source>two-point contact</source>

@@ -333,18 +333,18 @@ class Desk:
         """What an entry of a table or a list says."""
         return view.model().index(row, column).data()
 
-    def around(self, form):
-        """The area that a task panel scrolls in, or None."""
-        above = form.parentWidget()
+    def around(self, widget):
+        """The area that a widget, or a task panel, scrolls in, or None."""
+        above = widget.parentWidget()
         while above is not None and not self.is_a(above, self.widgets.QScrollArea):
             self.held.append(above)  # in FreeCAD 1.0 those of what is in a widget end with Python's object of it
             above = above.parentWidget()
         self.held.append(above)
         return above
 
-    def down(self, form, widget):
-        """Scroll the task panel until a widget is in sight."""
-        above = self.around(form)
+    def down(self, widget):
+        """Scroll a page of a task panel, or the panel, until a widget is in sight."""
+        above = self.around(widget)
         if above is not None:
             above.ensureWidgetVisible(widget, 0, 400)
             self.pump(0.1)

@@ -27,8 +27,8 @@ def test_plan_from_selection_to_objects_and_back(desk, wavy, form, remembered):
     desk.shot("1-job")
     form.tabs.setCurrentWidget(form.toolTab)
     desk.shot("2-tool")
-    form.tabs.setCurrentWidget(form.limitsTab)
-    desk.shot("3-limits")
+    form.tabs.setCurrentWidget(form.advancedTab)
+    desk.shot("3-advanced")
     desk.computed(form)
     assert "Every face has an axis" in form.message.text()
     assert form.tabs.currentWidget() is form.resultTab
@@ -146,7 +146,8 @@ IMPOSSIBLE = (("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diamet
 def test_impossible_values_lock_compute_with_the_reason(desk, form):
     for field, text, words in IMPOSSIBLE:
         widget = getattr(form, field)
-        form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
+        form.tabs.setCurrentWidget(next(tab for tab in (form.jobTab, form.toolTab, form.advancedTab)
+                                        if tab.isAncestorOf(widget)))
         good = desk.shown(widget)
         desk.type(widget, text)
         assert not form.compute.isEnabled() and words in form.message.text(), (field, text)
@@ -174,7 +175,6 @@ def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
 
 
 def test_limits_that_leave_no_axis(desk, form):
-    form.tabs.setCurrentWidget(form.limitsTab)
     form.limits.setCurrentIndex(1)
     form.limitZ.setValue(-1.0)
     desk.type(form.cone, "10 deg")

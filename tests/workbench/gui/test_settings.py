@@ -131,7 +131,6 @@ def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
     assert form.message.text().startswith("Rillenhöhe ist 50"), form.message.text()
     assert "eine kleinere Rillenhöhe angeben" in form.message.text()
     german.type(form.scallop, "0.1 mm")
-    form.tabs.setCurrentWidget(form.limitsTab)
     form.limits.setCurrentIndex(1)
     form.limitZ.setValue(-1.0)
     german.type(form.cone, "10 deg")

@@ -3,11 +3,8 @@
 from contextlib import suppress
 from pathlib import Path
 
-import FreeCAD
 from freecad.toolaxis.document.machine import machine_of
 from freecad.toolaxis.document.preferences import machines_folder
-
-translate = FreeCAD.Qt.translate
 
 #: How such a text begins: "machine:bc-table-table@0,0,60".
 PREFIX = "machine:"
@@ -40,8 +37,7 @@ def offered(document):
     found, standing = [], machine_of(document)
     if standing is not None:
         found.append((standing.Label, text_of(standing.Machine, tuple(standing.Offset))))
-    return found + [(translate("ToolAxis", "machine {}").format(shown), text_of(name))
-                    for shown, name in available().items()]
+    return found + [(shown, text_of(name)) for shown, name in available().items()]
 
 
 def folders():

@@ -21,7 +21,7 @@ from freecad.toolaxis.gui.plan.outcome import outcome_sentence
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
-from freecad.toolaxis.gui.widgets.fields import load_form, tell
+from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
 from freecad.toolaxis.paths import RESOURCES
@@ -38,6 +38,10 @@ from PySide import QtCore, QtWidgets
 translate = FreeCAD.Qt.translate
 
 _TYPED = 0
+#: Tabs that scroll, each for itself, below what is always in sight.  The layout has all of it in a splitter with one
+#: side: FreeCAD gives a panel whose height depends on its width, as that of a label of several lines does, all the
+#: height it would like, and scrolls it as a whole; a splitter tells no such thing.
+_PAGES = ("jobTab", "toolTab", "advancedTab", "resultTab")
 #: Axes that make a map worth showing.
 _ENOUGH = 40
 
@@ -132,6 +136,7 @@ class PlanPanel(Panel):
         self.fields.racks.on_change(self._rack_chosen)
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
+        form.facesFilter.textChanged.connect(self.fields.faces.show_matching)
         form.faces.itemSelectionChanged.connect(self._point_out)
         form.tool.activated.connect(self._tool_chosen)
         form.compute.clicked.connect(self.compute)
@@ -182,9 +187,9 @@ class PlanPanel(Panel):
         """Something in the fields is different: check it, and lock OK until it is computed again."""
         if self.work is None:
             self.computed = None
-        count = len(self.fields.faces.faces)
-        faces = translate("ToolAxis", "Faces") if not count else translate("ToolAxis", "Faces: {}").format(count)
-        self.form.facesGroup.setTitle(faces)
+        told = self.fields.faces.summary()
+        self.form.facesTold.setText(told)
+        self.form.facesTold.setToolTip(told)
         self.refusal = self.fields.refusal()
         self._show_state()
 
@@ -193,13 +198,14 @@ class PlanPanel(Panel):
         form.compute.setEnabled(not computing and not self.refusal)
         form.stop.setEnabled(computing)
         form.progress.setVisible(computing)
-        for tab in (form.jobTab, form.toolTab, form.limitsTab, form.advancedTab, self.view.map, self.view.curve):
-            tab.setEnabled(not computing)
+        for page in (form.jobPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
+            page.setEnabled(not computing)
         if self.buttons is not None:
             with suppress(RuntimeError):
                 self.buttons.button(QtWidgets.QDialogButtonBox.Ok).setEnabled(self.ready)
         if not computing:
             self._tell(*self._state())
+        fit_pages(form, _PAGES)
 
     def _state(self):
         """The sentence that tells how things stand, and whether it is bad."""
