@@ -43,6 +43,10 @@
    <translation>Achse, die dreht</translation>
   </message>
   <message>
+   <source>Back</source>
+   <translation>Zurück</translation>
+  </message>
+  <message>
    <source>Between the passes {}</source>
    <translation>Zwischen den Bahnen: {}</translation>
   </message>
@@ -123,8 +127,8 @@
    <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf dem Reiter Achse. OK stellt sie ins Dokument.</translation>
   </message>
   <message>
-   <source>Every face has an axis. OK puts them into the document.</source>
-   <translation>Jede Fläche hat eine Achse. OK stellt sie ins Dokument.</translation>
+   <source>Every face has an axis. {} OK puts them into the document.</source>
+   <translation>Jede Fläche hat eine Achse. {} OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>Face {}</source>
@@ -167,6 +171,10 @@
    <translation>Konturverletzung, höchstens</translation>
   </message>
   <message>
+   <source>HTML report: needs {}</source>
+   <translation>HTML-Bericht: braucht {}</translation>
+  </message>
+  <message>
    <source>Height</source>
    <translation>Höhe</translation>
   </message>
@@ -181,6 +189,10 @@
   <message>
    <source>Inside tolerance</source>
    <translation>Innerhalb der Toleranz</translation>
+  </message>
+  <message>
+   <source>Install {} by the Addon Manager for reports.</source>
+   <translation>Für Berichte {} mit dem Addon-Manager installieren.</translation>
   </message>
   <message>
    <source>Job {}</source>
@@ -407,12 +419,12 @@
    <translation>Angehalten</translation>
   </message>
   <message>
-   <source>Stopped after {} of the faces; OK puts these into the document.</source>
-   <translation>Nach {} der Flächen angehalten; OK stellt diese ins Dokument.</translation>
-  </message>
-  <message>
    <source>Stopped before the first face had passes.</source>
    <translation>Angehalten, bevor die erste Fläche Bahnen hatte.</translation>
+  </message>
+  <message>
+   <source>Stopped with {} finished. {} OK puts what is finished into the document.</source>
+   <translation>Angehalten, fertig: {}. {} OK stellt das Fertige ins Dokument.</translation>
   </message>
   <message>
    <source>Stopped. {} OK puts what is finished into the document.</source>
@@ -551,6 +563,10 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
+   <source>Tool Axis: tour and manual</source>
+   <translation>Tool Axis: Rundgang und Handbuch</translation>
+  </message>
+  <message>
    <source>Tool Axis: {}; tool axis {} in the document</source>
    <translation>Tool Axis: {}; Werkzeugachse {} im Dokument</translation>
   </message>
@@ -617,6 +633,10 @@
   <message>
    <source>above the limit</source>
    <translation>über der Grenze</translation>
+  </message>
+  <message>
+   <source>axes: {}</source>
+   <translation>Achsen: {}</translation>
   </message>
   <message>
    <source>axis tried</source>
@@ -687,6 +707,10 @@
    <translation>mittlere Normale</translation>
   </message>
   <message>
+   <source>mean step-over {}</source>
+   <translation>mittlerer Bahnabstand {}</translation>
+  </message>
+  <message>
    <source>no other body in the document</source>
    <translation>kein anderer Körper im Dokument</translation>
   </message>
@@ -727,6 +751,10 @@
    <translation>über {}</translation>
   </message>
   <message>
+   <source>passes: {}</source>
+   <translation>Bahnen: {}</translation>
+  </message>
+  <message>
    <source>screening</source>
    <translation>Vorauswahl</translation>
   </message>
@@ -765,10 +793,6 @@
   <message>
    <source>{} (turned copy)</source>
    <translation>{} (gedrehte Kopie)</translation>
-  </message>
-  <message>
-   <source>{} ({} of {})</source>
-   <translation>{} ({} von {})</translation>
   </message>
   <message>
    <source>{} Collisions with the part could not be looked for: {}</source>
@@ -823,8 +847,8 @@
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
   <message>
-   <source>{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into the document.</source>
-   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. OK stellt sie ins Dokument.</translation>
+   <source>{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them into the document.</source>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. {} OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
@@ -887,6 +911,10 @@
    <translation>{}, {:.1f} % weniger als beim ersten</translation>
   </message>
   <message>
+   <source>{}. Assumed: {}.</source>
+   <translation>{}. Angenommen: {}.</translation>
+  </message>
+  <message>
    <source>{}: left to clean-up</source>
    <translation>{}: Restmaterial</translation>
   </message>
@@ -909,10 +937,6 @@
   <message>
    <source>{}: {} operations</source>
    <translation>{}: {} Operationen</translation>
-  </message>
-  <message>
-   <source>{}: {}. Assumed: {}.</source>
-   <translation>{}: {}. Angenommen: {}.</translation>
   </message>
  </context>
  <context>
@@ -2087,6 +2111,17 @@
   <message>
    <source>Split Sub-Surface</source>
    <translation>Teilfläche zerteilen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Tour</name>
+  <message>
+   <source>Opens the tour from a part to a posted program, and from there the manual</source>
+   <translation>Öffnet den Rundgang vom Teil zum fertigen Programm (englisch), und von dort das Handbuch</translation>
+  </message>
+  <message>
+   <source>Tool Axis Tour</source>
+   <translation>Rundgang durch Tool Axis</translation>
   </message>
  </context>
  <context>

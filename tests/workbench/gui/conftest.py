@@ -126,6 +126,7 @@ class Desk:
 
     def _record(self):
         """Let task panels and windows of pictures be known from when they are made until Qt deletes their forms."""
+        from freecad.toolaxis.gui.manual.window import ManualWindow
         from freecad.toolaxis.gui.pictures.window import PictureWindow
         from freecad.toolaxis.gui.widgets.panel import Panel
 
@@ -138,7 +139,7 @@ class Desk:
                 form_of(one).destroyed.connect(lambda *_: self.opened.remove(known))
             return __init__
 
-        for kind in (Panel, PictureWindow):
+        for kind in (Panel, PictureWindow, ManualWindow):
             kind.__init__ = recorded(kind.__init__)
 
     def pump(self, seconds=0.05):

@@ -80,12 +80,12 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
         return form.operation.currentText(), view.map.picture, form.cost.text()
 
     view.show_growing(first, faces[2], titles)
-    assert shown() == ("Face 2", first, "Face 2 (1 of 3): the axes looked at so far")
+    assert shown() == ("Face 2", first, "Face 2: the axes looked at so far")
     assert not form.operation.isHidden() and form.operation.itemText(2) == "Face 7: not begun"
     view.show_growing(second, faces[5], titles)
-    assert shown() == ("Face 5", second, "Face 5 (2 of 3): the axes looked at so far"), "follows what is computed"
+    assert shown() == ("Face 5", second, "Face 5: the axes looked at so far"), "follows what is computed"
     form.operation.setCurrentIndex(2)
-    assert shown() == ("Face 7: not begun", None, "Face 7 (3 of 3): no axis looked at yet")
+    assert shown() == ("Face 7: not begun", None, "Face 7: no axis looked at yet")
     form.operation.setCurrentIndex(0)
     assert shown()[1] is first
     view.show_growing(third, faces[5], titles)
@@ -93,7 +93,7 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
     form.operation.setCurrentIndex(1)
     assert shown()[1] is third
     view.show_growing(second, faces[7], titles)
-    assert shown() == ("Face 7", second, "Face 7 (3 of 3): the axes looked at so far")
+    assert shown() == ("Face 7", second, "Face 7: the axes looked at so far")
     view.clear()
     assert view.map.picture is None and form.operation.isHidden()
 

@@ -22,7 +22,7 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from freecad.toolaxis.gui.commands import examples
+        from freecad.toolaxis.gui.commands import examples, tour
         from freecad.toolaxis.gui.commands.toolbar import register
         from freecad.toolaxis.gui.widgets.error_report import offer_report
         from freecad.toolaxis.services.background import hear_errors
@@ -33,6 +33,8 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
         menu = QT_TRANSLATE_NOOP("Workbench", "&Tool Axis")
         self.appendMenu(menu, names)
         self.appendMenu([menu, QT_TRANSLATE_NOOP("Workbench", "Examples")], examples.register())
+        self.appendMenu(menu, tour.register())
+        self.appendMenu("&Help", tour.register())
         self._names = names
 
     def ContextMenu(self, recipient):

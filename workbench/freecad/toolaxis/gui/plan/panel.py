@@ -390,12 +390,13 @@ def _growing(offered):
 
 def _make_plan(task, progress):
     """Plan and pictures; runs off the GUI thread."""
+    from toolaxis.errors import Cancelled
     from toolaxis.progress import NO_PROGRESS
 
     plan = task(progress)
     pictures = {}
     for op in plan.operations:
-        if plan.outcome != "cancelled":
+        with suppress(Cancelled):  # the plan is there: it is shown, whoever pressed Stop after its last step
             progress.report(translate("ToolAxis", "drawing the map"), op.number - 1, len(plan.operations))
         pictures[op.number] = axis_picture(plan, op, NO_PROGRESS)
     return plan, pictures

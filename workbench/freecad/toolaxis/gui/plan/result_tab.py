@@ -165,9 +165,6 @@ class AxisView(QtCore.QObject):
         """A growing map, or None, and the sentence about it."""
         number = self._grown
         picture, title = self.growing[number] or (None, self.titles[number])
-        if len(self.growing) > 1:
-            place = list(self.growing).index(number) + 1
-            title = translate("ToolAxis", "{} ({} of {})").format(title, place, len(self.growing))
         if picture is None:
             return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
         return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)
