@@ -1128,8 +1128,8 @@
    <translation>Trägt entlang der Bahnen Material ab.</translation>
   </message>
   <message>
-   <source>Tool at</source>
-   <translation>Werkzeug bei</translation>
+   <source>Tool position</source>
+   <translation>Werkzeugstelle</translation>
   </message>
   <message>
    <source>Verify</source>
@@ -1219,8 +1219,8 @@
    <translation>Achse gesperrt</translation>
   </message>
   <message>
-   <source>Back to the best</source>
-   <translation>Zurück zur besten</translation>
+   <source>Azimuth</source>
+   <translation>Azimut</translation>
   </message>
   <message>
    <source>Ball</source>
@@ -1243,8 +1243,16 @@
    <translation>Berechnen</translation>
   </message>
   <message>
+   <source>Cone axis</source>
+   <translation>Kegelachse</translation>
+  </message>
+  <message>
    <source>Corner radius</source>
    <translation>Eckenradius</translation>
+  </message>
+  <message>
+   <source>Cutter type</source>
+   <translation>Fräsertyp</translation>
   </message>
   <message>
    <source>Diameter</source>
@@ -1301,10 +1309,6 @@
   <message>
    <source>Flute length</source>
    <translation>Schneidenlänge</translation>
-  </message>
-  <message>
-   <source>From</source>
-   <translation>Von</translation>
   </message>
   <message>
    <source>From the tip to the lower face of the holder.</source>
@@ -1384,11 +1388,7 @@
   </message>
   <message>
    <source>Lean at least</source>
-   <translation>Neigung mindestens</translation>
-  </message>
-  <message>
-   <source>Least</source>
-   <translation>Kleinste</translation>
+   <translation>Min. Neigung</translation>
   </message>
   <message>
    <source>Least angle between the tool axis and the middle.</source>
@@ -1423,10 +1423,6 @@
    <translation>Verfahren</translation>
   </message>
   <message>
-   <source>Middle</source>
-   <translation>Mitte</translation>
-  </message>
-  <message>
    <source>Middle of the allowed axes, x.</source>
    <translation>Mitte der erlaubten Achsen, x.</translation>
   </message>
@@ -1437,6 +1433,10 @@
   <message>
    <source>Middle of the allowed axes, z.</source>
    <translation>Mitte der erlaubten Achsen, z.</translation>
+  </message>
+  <message>
+   <source>Minimise</source>
+   <translation>Minimieren</translation>
   </message>
   <message>
    <source>Moves tool and holder along the passes.</source>
@@ -1519,6 +1519,10 @@
    <translation>Entfernt die markierten Zeilen, sonst die letzte.</translation>
   </message>
   <message>
+   <source>Restore best axis</source>
+   <translation>Beste Achse</translation>
+  </message>
+  <message>
    <source>Revolutions of the spindle per minute.</source>
    <translation>Umdrehungen der Spindel in der Minute.</translation>
   </message>
@@ -1539,10 +1543,6 @@
    <translation>Schaft, Höhen ab der Spitze</translation>
   </message>
   <message>
-   <source>Shape</source>
-   <translation>Form</translation>
-  </message>
-  <message>
    <source>Shape of the cutter's end.</source>
    <translation>Form des Fräserendes.</translation>
   </message>
@@ -1556,7 +1556,7 @@
   </message>
   <message>
    <source>Step-over at most</source>
-   <translation>Bahnabstand höchstens</translation>
+   <translation>Max. Bahnabstand</translation>
   </message>
   <message>
    <source>Stick-out</source>
@@ -1639,8 +1639,12 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
-   <source>Tool at</source>
-   <translation>Werkzeug bei</translation>
+   <source>Tool position</source>
+   <translation>Werkzeugstelle</translation>
+  </message>
+  <message>
+   <source>Tool source</source>
+   <translation>Werkzeug aus</translation>
   </message>
   <message>
    <source>Tools</source>
@@ -1653,10 +1657,6 @@
   <message>
    <source>Try the passes along the other parameter lines, with the same axis.</source>
    <translation>Probiert mit derselben Achse die Bahnen entlang der anderen Parameterlinien aus.</translation>
-  </message>
-  <message>
-   <source>Turn</source>
-   <translation>Drehung</translation>
   </message>
   <message>
    <source>Use at most</source>

@@ -410,6 +410,17 @@ def desk(_desk):
     assert not _desk.kept(), _desk.kept()
 
 
+@pytest.fixture
+def german(desk):
+    """FreeCAD in German, and in English again afterwards."""
+    desk.gui.setLocale("de")
+    desk.pump(0.3)
+    yield desk
+    desk.tidy()
+    desk.gui.setLocale("en")
+    desk.pump(0.3)
+
+
 @pytest.fixture(scope="session")
 def part_file(tmp_path_factory, _desk):
     """A STEP file of a small block with a wavy top, Face-numbers as FreeCAD reads them."""

@@ -129,17 +129,6 @@ def test_the_tour_opens_from_both_menus(desk):
     desk.wait(lambda: desk.form("ToolAxisManual") is None, "the manual is closed")
 
 
-@pytest.fixture
-def german(desk):
-    """FreeCAD in German, and in English again afterwards."""
-    desk.gui.setLocale("de")
-    desk.pump(0.3)
-    yield desk
-    desk.tidy()
-    desk.gui.setLocale("en")
-    desk.pump(0.3)
-
-
 def test_the_panel_speaks_german(german, wavy):
     part, face = wavy
     form = german.start(part, face)

@@ -61,6 +61,30 @@ def test_compute_and_the_headline_stay_whatever_is_scrolled(desk, form, resize, 
     desk.shot(f"97-{size[0]}-result")
 
 
+def test_nothing_is_cut_off_in_german(german, wavy, resize, remembered):
+    """FreeCAD's overlay is as wide as it is, and cuts off what is wider."""
+    resize(1100, 700)
+    form = german.start(*wavy)
+    room = german.around(form).viewport().width()
+    for rack in (1, 0):
+        form.rack.setCurrentIndex(rack)
+        form.kind.setCurrentIndex(form.kind.count() - 1)
+        form.limits.setCurrentIndex(2)
+        german.pump(0.2)
+        assert form.minimumSizeHint().width() <= room, "job, tool and advanced"
+        assert hidden(form, ASKED) == []
+    form.limits.setCurrentIndex(0)
+    form.kind.setCurrentIndex(0)
+    german.type(form.scallop, "0.05 mm")
+    german.computed(form)
+    german.pump(0.2)
+    assert form.minimumSizeHint().width() <= room, "result"
+    assert hidden(form, ("message", "compute", "stop")) == []
+    german.down(form.lockFeed)
+    assert in_sight(form.lockAxis) and in_sight(form.lockFeed)
+    german.shot("99-german-result")
+
+
 def test_the_wheel_is_left_to_what_is_scrolled(desk, form):
     """Also over a field that has the focus.  Qt passes on what nobody takes, but only if it comes from outside."""
     from PySide import QtCore, QtGui

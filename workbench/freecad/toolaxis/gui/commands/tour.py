@@ -2,6 +2,7 @@
 
 import FreeCAD
 from freecad.toolaxis.gui.commands.freecad import add_commands
+from freecad.toolaxis.gui.manual.window import show_manual
 from freecad.toolaxis.paths import RESOURCES
 
 QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
@@ -23,8 +24,6 @@ class Tour:
 
     def Activated(self):
         """Open the window."""
-        from freecad.toolaxis.gui.manual.window import show_manual
-
         show_manual("freecad.md")
 
 

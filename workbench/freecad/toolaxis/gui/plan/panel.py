@@ -151,14 +151,19 @@ class PlanPanel(Panel):
         nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
         self.problem = "; ".join(problems) or ("" if faces else nothing)
         self.fields.faces.add(faces)
+        self._offer_bodies()
+        self._changed()
+
+    def _offer_bodies(self):
+        """Offer all bodies to be avoided but those that are machined."""
         parts = [thing for thing, _ in self.fields.faces.faces]
         self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
-        self._changed()
 
     def _rack_chosen(self):
         """A rack machines whole parts: where no face was chosen, all of the only body is."""
         if self.fields.racks.chosen and not self.fields.faces.faces:
             self.fields.faces.add(faces_of_only_body(self.document))
+            self._offer_bodies()
 
     def _point_out(self):
         """Select in the 3D view what is marked in the list."""

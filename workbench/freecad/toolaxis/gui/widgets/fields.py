@@ -91,7 +91,7 @@ def fit_pages(form, names):
     for name in names:
         area = getattr(form, name)
         width = area.widget().minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width()
-        if area.minimumWidth() < width:
+        if area.minimumWidth() != width:
             area.setMinimumWidth(width)
 
 
