@@ -563,6 +563,10 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
+   <source>Tool Axis loads its libraries in the background</source>
+   <translation>Tool Axis lädt seine Bibliotheken im Hintergrund</translation>
+  </message>
+  <message>
    <source>Tool Axis: tour and manual</source>
    <translation>Tool Axis: Rundgang und Handbuch</translation>
   </message>

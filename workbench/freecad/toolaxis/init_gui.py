@@ -1,4 +1,4 @@
-"""The workbench "Tool Axis" and its commands; nothing heavy is imported before a command runs."""
+"""The workbench "Tool Axis" and its commands; what is heavy is loaded beside the window."""
 
 import FreeCAD
 import FreeCADGui
@@ -11,6 +11,9 @@ FreeCADGui.addLanguagePath(str(RESOURCES / "translations"))
 FreeCADGui.updateLocale()
 FreeCADGui.addIconPath(str(RESOURCES / "icons"))
 FreeCADGui.addPreferencePage(str(RESOURCES / "ui" / "preferences.ui"), QT_TRANSLATE_NOOP("QObject", "Tool Axis"))
+
+#: How long the status bar tells what goes on, ms.
+_TOLD = 8000
 
 
 class ToolAxisWorkbench(FreeCADGui.Workbench):
@@ -36,6 +39,14 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
         self.appendMenu(menu, tour.register())
         self.appendMenu("&Help", tour.register())
         self._names = names
+
+    def Activated(self):
+        """Load the libraries meanwhile: opening the first panel does not wait for them then."""
+        from freecad.toolaxis.services.background import load_ahead
+
+        if load_ahead():
+            told = FreeCAD.Qt.translate("ToolAxis", "Tool Axis loads its libraries in the background")
+            FreeCADGui.getMainWindow().statusBar().showMessage(told, _TOLD)
 
     def ContextMenu(self, recipient):
         """Offer the commands where something is selected.
