@@ -119,7 +119,7 @@ def breathe() -> None:
 class WorkLeft(NamedTuple):
     """What is left of the work.
 
-    seconds : float;  of_all : bool, whether of all pieces, or of the present step alone.
+    seconds : float;  of_all : bool, whether of all the work, or of the present step alone.
     """
 
     seconds: float
@@ -148,6 +148,7 @@ class Remaining:
     def __init__(self) -> None:
         self._group: tuple[str, int] = "", 0
         self._pieces: dict[int, _Piece] = {}
+        self._in_pieces = False
         self._stage, self._total, self._share = "", 0.0, 0.0
         self._since = 0.0, 0.0
 
@@ -163,6 +164,7 @@ class Remaining:
             When it was heard, s.
         """
         found = _PIECE.search(stage)
+        self._in_pieces = found is not None
         if found is not None:
             number, group = int(found[2]), (found[1], int(found[3]))
             if group != self._group:
@@ -182,9 +184,9 @@ class Remaining:
         now : float
             s
         """
-        seconds = self._seconds_of_pieces(now)
+        seconds = self._seconds_of_pieces(now) if self._in_pieces else None
         if seconds is not None:
-            return WorkLeft(seconds, True)
+            return WorkLeft(seconds, not self._group[0])  # led by a name they are of one tool, and others follow
         begun, start = self._since
         if self._share - start < _KNOWN or now - begun < _LONG_ENOUGH:
             return None

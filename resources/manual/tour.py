@@ -144,10 +144,8 @@ class Tour:
         self.desk.pump(0.3)
 
     def top(self, form):
-        """Scroll the panel to its beginning."""
-        above = self.desk.around(form)
-        if above is not None:
-            above.verticalScrollBar().setValue(0)
+        """Scroll the tab that is shown to its beginning."""
+        form.tabs.currentWidget().verticalScrollBar().setValue(0)
         self.desk.pump(0.2)
 
     def verified(self):
@@ -176,8 +174,9 @@ class Tour:
         form.regions.setCurrentIndex(2)
         self.fitted()
         desk.computed(form)
-        form.tabs.setCurrentWidget(form.jobTab)
-        self.top(form)
+        form.tabs.setCurrentWidget(form.advancedTab)
+        form.advancedTab.ensureWidgetVisible(form.divisionGroup)
+        desk.pump(0.2)
         self.picture("7-division")
         desk.press(desk.standard_button("Ok"))
         desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")

@@ -43,6 +43,10 @@
    <translation>Achse, die dreht</translation>
   </message>
   <message>
+   <source>Back</source>
+   <translation>Zurück</translation>
+  </message>
+  <message>
    <source>Between the passes {}</source>
    <translation>Zwischen den Bahnen: {}</translation>
   </message>
@@ -123,8 +127,8 @@
    <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf dem Reiter Achse. OK stellt sie ins Dokument.</translation>
   </message>
   <message>
-   <source>Every face has an axis. OK puts them into the document.</source>
-   <translation>Jede Fläche hat eine Achse. OK stellt sie ins Dokument.</translation>
+   <source>Every face has an axis. {} OK puts them into the document.</source>
+   <translation>Jede Fläche hat eine Achse. {} OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>Face {}</source>
@@ -133,14 +137,6 @@
   <message>
    <source>Face {} (turned copy)</source>
    <translation>Fläche {} (gedrehte Kopie)</translation>
-  </message>
-  <message>
-   <source>Faces</source>
-   <translation>Flächen</translation>
-  </message>
-  <message>
-   <source>Faces: {}</source>
-   <translation>Flächen: {}</translation>
   </message>
   <message>
    <source>Finishing {}</source>
@@ -175,6 +171,10 @@
    <translation>Konturverletzung, höchstens</translation>
   </message>
   <message>
+   <source>HTML report: needs {}</source>
+   <translation>HTML-Bericht: braucht {}</translation>
+  </message>
+  <message>
    <source>Height</source>
    <translation>Höhe</translation>
   </message>
@@ -189,6 +189,10 @@
   <message>
    <source>Inside tolerance</source>
    <translation>Innerhalb der Toleranz</translation>
+  </message>
+  <message>
+   <source>Install {} by the Addon Manager for reports.</source>
+   <translation>Für Berichte {} mit dem Addon-Manager installieren.</translation>
   </message>
   <message>
    <source>Job {}</source>
@@ -415,12 +419,12 @@
    <translation>Angehalten</translation>
   </message>
   <message>
-   <source>Stopped after {} of the faces; OK puts these into the document.</source>
-   <translation>Nach {} der Flächen angehalten; OK stellt diese ins Dokument.</translation>
-  </message>
-  <message>
    <source>Stopped before the first face had passes.</source>
    <translation>Angehalten, bevor die erste Fläche Bahnen hatte.</translation>
+  </message>
+  <message>
+   <source>Stopped with {} finished. {} OK puts what is finished into the document.</source>
+   <translation>Angehalten, fertig: {}. {} OK stellt das Fertige ins Dokument.</translation>
   </message>
   <message>
    <source>Stopped. {} OK puts what is finished into the document.</source>
@@ -559,6 +563,14 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
+   <source>Tool Axis loads its libraries in the background</source>
+   <translation>Tool Axis lädt seine Bibliotheken im Hintergrund</translation>
+  </message>
+  <message>
+   <source>Tool Axis: tour and manual</source>
+   <translation>Tool Axis: Rundgang und Handbuch</translation>
+  </message>
+  <message>
    <source>Tool Axis: {}; tool axis {} in the document</source>
    <translation>Tool Axis: {}; Werkzeugachse {} im Dokument</translation>
   </message>
@@ -627,6 +639,10 @@
    <translation>über der Grenze</translation>
   </message>
   <message>
+   <source>axes: {}</source>
+   <translation>Achsen: {}</translation>
+  </message>
+  <message>
    <source>axis tried</source>
    <translation>ausprobierte Achse</translation>
   </message>
@@ -687,16 +703,16 @@
    <translation>Bibliotheksdatei...</translation>
   </message>
   <message>
-   <source>machine {}</source>
-   <translation>Maschine {}</translation>
-  </message>
-  <message>
    <source>making passes</source>
    <translation>Bahnen werden gemacht</translation>
   </message>
   <message>
    <source>mean normal</source>
    <translation>mittlere Normale</translation>
+  </message>
+  <message>
+   <source>mean step-over {}</source>
+   <translation>mittlerer Bahnabstand {}</translation>
   </message>
   <message>
    <source>no other body in the document</source>
@@ -739,6 +755,10 @@
    <translation>über {}</translation>
   </message>
   <message>
+   <source>passes: {}</source>
+   <translation>Bahnen: {}</translation>
+  </message>
+  <message>
    <source>screening</source>
    <translation>Vorauswahl</translation>
   </message>
@@ -777,10 +797,6 @@
   <message>
    <source>{} (turned copy)</source>
    <translation>{} (gedrehte Kopie)</translation>
-  </message>
-  <message>
-   <source>{} ({} of {})</source>
-   <translation>{} ({} von {})</translation>
   </message>
   <message>
    <source>{} Collisions with the part could not be looked for: {}</source>
@@ -827,12 +843,16 @@
    <translation>{} nicht begonnen</translation>
   </message>
   <message>
+   <source>{} of {}</source>
+   <translation>{} von {}</translation>
+  </message>
+  <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
   <message>
-   <source>{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into the document.</source>
-   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. OK stellt sie ins Dokument.</translation>
+   <source>{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them into the document.</source>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. {} OK stellt sie ins Dokument.</translation>
   </message>
   <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>
@@ -857,6 +877,10 @@
   <message>
    <source>{} operations: plan.json and their CL files are written.</source>
    <translation>{} Operationen: plan.json und ihre CL-Dateien werden geschrieben.</translation>
+  </message>
+  <message>
+   <source>{} parts</source>
+   <translation>{} Teilen</translation>
   </message>
   <message>
    <source>{} proven out of reach</source>
@@ -891,6 +915,10 @@
    <translation>{}, {:.1f} % weniger als beim ersten</translation>
   </message>
   <message>
+   <source>{}. Assumed: {}.</source>
+   <translation>{}. Angenommen: {}.</translation>
+  </message>
+  <message>
    <source>{}: left to clean-up</source>
    <translation>{}: Restmaterial</translation>
   </message>
@@ -913,10 +941,6 @@
   <message>
    <source>{}: {} operations</source>
    <translation>{}: {} Operationen</translation>
-  </message>
-  <message>
-   <source>{}: {}. Assumed: {}.</source>
-   <translation>{}: {}. Angenommen: {}.</translation>
   </message>
  </context>
  <context>
@@ -1108,8 +1132,8 @@
    <translation>Trägt entlang der Bahnen Material ab.</translation>
   </message>
   <message>
-   <source>Tool at</source>
-   <translation>Werkzeug bei</translation>
+   <source>Tool position</source>
+   <translation>Werkzeugstelle</translation>
   </message>
   <message>
    <source>Verify</source>
@@ -1175,10 +1199,6 @@
    <translation>Aufmaße auf einzelnen Flächen an Stelle dessen auf dem Reiter Auftrag, in mm nach den Nummern der Flächen.</translation>
   </message>
   <message>
-   <source>Allowed</source>
-   <translation>Erlaubt</translation>
-  </message>
-  <message>
    <source>Along the parameters of the face; in parallel planes that contain the tool axis; following the scallop height, so that passes lie as far apart as their strips are wide; or whichever of the first and the third is shorter. All but the first need fixed axes.</source>
    <translation>Längs der Parameter der Fläche; in parallelen Ebenen, in denen die Werkzeugachse liegt; der Rillenhöhe folgend, sodass die Bahnen so weit auseinander liegen, wie ihre Streifen breit sind; oder die kürzere von erster und dritter Art. Alle außer der ersten brauchen feste Achsen.</translation>
   </message>
@@ -1203,8 +1223,8 @@
    <translation>Achse gesperrt</translation>
   </message>
   <message>
-   <source>Back to the best</source>
-   <translation>Zurück zur besten</translation>
+   <source>Azimuth</source>
+   <translation>Azimut</translation>
   </message>
   <message>
    <source>Ball</source>
@@ -1227,8 +1247,16 @@
    <translation>Berechnen</translation>
   </message>
   <message>
+   <source>Cone axis</source>
+   <translation>Kegelachse</translation>
+  </message>
+  <message>
    <source>Corner radius</source>
    <translation>Eckenradius</translation>
+  </message>
+  <message>
+   <source>Cutter type</source>
+   <translation>Fräsertyp</translation>
   </message>
   <message>
    <source>Diameter</source>
@@ -1259,6 +1287,10 @@
    <translation>Flächen</translation>
   </message>
   <message>
+   <source>Faces to machine</source>
+   <translation>Zu bearbeitende Flächen</translation>
+  </message>
+  <message>
    <source>Feed locked</source>
    <translation>Vorschub gesperrt</translation>
   </message>
@@ -1271,16 +1303,16 @@
    <translation>Vorschub der Schnittbewegung.</translation>
   </message>
   <message>
+   <source>Filter: Face12, or &lt; 5 for small faces</source>
+   <translation>Filter: Face12, oder &lt; 5 für kleine Flächen</translation>
+  </message>
+  <message>
    <source>Flat end mill</source>
    <translation>Schaftfräser</translation>
   </message>
   <message>
    <source>Flute length</source>
    <translation>Schneidenlänge</translation>
-  </message>
-  <message>
-   <source>From</source>
-   <translation>Von</translation>
   </message>
   <message>
    <source>From the tip to the lower face of the holder.</source>
@@ -1360,11 +1392,7 @@
   </message>
   <message>
    <source>Lean at least</source>
-   <translation>Neigung mindestens</translation>
-  </message>
-  <message>
-   <source>Least</source>
-   <translation>Kleinste</translation>
+   <translation>Min. Neigung</translation>
   </message>
   <message>
    <source>Least angle between the tool axis and the middle.</source>
@@ -1383,16 +1411,12 @@
    <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
-   <source>Limits</source>
-   <translation>Grenzen</translation>
-  </message>
-  <message>
-   <source>Limits of the tool axis</source>
-   <translation>Grenzen der Werkzeugachse</translation>
-  </message>
-  <message>
    <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>
    <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
+  </message>
+  <message>
+   <source>Machine</source>
+   <translation>Maschine</translation>
   </message>
   <message>
    <source>Machining tolerance: how far the finished surface may be cut too deep.</source>
@@ -1401,10 +1425,6 @@
   <message>
    <source>Method</source>
    <translation>Verfahren</translation>
-  </message>
-  <message>
-   <source>Middle</source>
-   <translation>Mitte</translation>
   </message>
   <message>
    <source>Middle of the allowed axes, x.</source>
@@ -1417,6 +1437,10 @@
   <message>
    <source>Middle of the allowed axes, z.</source>
    <translation>Mitte der erlaubten Achsen, z.</translation>
+  </message>
+  <message>
+   <source>Minimise</source>
+   <translation>Minimieren</translation>
   </message>
   <message>
    <source>Moves tool and holder along the passes.</source>
@@ -1471,16 +1495,16 @@
    <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
   </message>
   <message>
-   <source>Plan with</source>
-   <translation>Planen mit</translation>
-  </message>
-  <message>
    <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
    <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
   </message>
   <message>
    <source>Radius of the rounded corner.</source>
    <translation>Radius der gerundeten Ecke.</translation>
+  </message>
+  <message>
+   <source>Rates</source>
+   <translation>Vorschub und Drehzahl</translation>
   </message>
   <message>
    <source>Remove</source>
@@ -1497,6 +1521,10 @@
   <message>
    <source>Removes the marked rows, or the last one.</source>
    <translation>Entfernt die markierten Zeilen, sonst die letzte.</translation>
+  </message>
+  <message>
+   <source>Restore best axis</source>
+   <translation>Beste Achse</translation>
   </message>
   <message>
    <source>Revolutions of the spindle per minute.</source>
@@ -1519,12 +1547,12 @@
    <translation>Schaft, Höhen ab der Spitze</translation>
   </message>
   <message>
-   <source>Shape</source>
-   <translation>Form</translation>
-  </message>
-  <message>
    <source>Shape of the cutter's end.</source>
    <translation>Form des Fräserendes.</translation>
+  </message>
+  <message>
+   <source>Shows only the faces whose name has this text, or whose area is less than a number: &lt; 5. Remove then takes the marked ones off the list, Ctrl+A marks all that are shown.</source>
+   <translation>Zeigt nur die Flächen, deren Name diesen Text enthält oder deren Inhalt kleiner als eine Zahl ist: &lt; 5. Entfernen nimmt dann die markierten von der Liste, Strg+A markiert alle gezeigten.</translation>
   </message>
   <message>
    <source>Spindle</source>
@@ -1532,7 +1560,7 @@
   </message>
   <message>
    <source>Step-over at most</source>
-   <translation>Bahnabstand höchstens</translation>
+   <translation>Max. Bahnabstand</translation>
   </message>
   <message>
    <source>Stick-out</source>
@@ -1579,6 +1607,10 @@
    <translation>Die zu bearbeitenden Flächen; jede bekommt eine eigene Werkzeugachse.</translation>
   </message>
   <message>
+   <source>The machine whose rotary axes must reach the tool axis, or limits of your own: a cone, or ranges of two angles.</source>
+   <translation>Die Maschine, deren Drehachsen die Werkzeugachse erreichen müssen, oder eigene Grenzen: ein Kegel oder Bereiche zweier Winkel.</translation>
+  </message>
+  <message>
    <source>The rest of the part is always kept clear of; ticked bodies too.</source>
    <translation>Der Rest des Teils wird immer gemieden, angekreuzte Körper auch.</translation>
   </message>
@@ -1611,8 +1643,12 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
-   <source>Tool at</source>
-   <translation>Werkzeug bei</translation>
+   <source>Tool position</source>
+   <translation>Werkzeugstelle</translation>
+  </message>
+  <message>
+   <source>Tool source</source>
+   <translation>Werkzeug aus</translation>
   </message>
   <message>
    <source>Tools</source>
@@ -1625,10 +1661,6 @@
   <message>
    <source>Try the passes along the other parameter lines, with the same axis.</source>
    <translation>Probiert mit derselben Achse die Bahnen entlang der anderen Parameterlinien aus.</translation>
-  </message>
-  <message>
-   <source>Turn</source>
-   <translation>Drehung</translation>
   </message>
   <message>
    <source>Use at most</source>
@@ -1667,20 +1699,24 @@
    <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
   </message>
   <message>
-   <source>Which tool axes are allowed: all, those in a cone, those in ranges of two angles, or those of a machine.</source>
-   <translation>Welche Werkzeugachsen erlaubt sind: alle, die in einem Kegel, die in Bereichen zweier Winkel oder die einer Maschine.</translation>
-  </message>
-  <message>
    <source>along parameters</source>
    <translation>längs der Parameter</translation>
   </message>
   <message>
-   <source>any axis</source>
-   <translation>jede Achse</translation>
+   <source>any machine</source>
+   <translation>beliebige Maschine</translation>
   </message>
   <message>
    <source>any number of tools</source>
    <translation>beliebig viele Werkzeuge</translation>
+  </message>
+  <message>
+   <source>any, axis within a cone</source>
+   <translation>beliebig, Achse in einem Kegel</translation>
+  </message>
+  <message>
+   <source>any, tilt and turn limited</source>
+   <translation>beliebig, Neigung und Drehung begrenzt</translation>
   </message>
   <message>
    <source>at most</source>
@@ -1709,10 +1745,6 @@
   <message>
    <source>climb</source>
    <translation>Gleichlauf</translation>
-  </message>
-  <message>
-   <source>cone</source>
-   <translation>Kegel</translation>
   </message>
   <message>
    <source>conventional</source>
@@ -1769,10 +1801,6 @@
   <message>
    <source>strip width and roughness</source>
    <translation>Streifenbreite und Rauheit</translation>
-  </message>
-  <message>
-   <source>tilt and turn</source>
-   <translation>Neigung und Drehung</translation>
   </message>
   <message>
    <source>two-point contact</source>
@@ -2087,6 +2115,17 @@
   <message>
    <source>Split Sub-Surface</source>
    <translation>Teilfläche zerteilen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Tour</name>
+  <message>
+   <source>Opens the tour from a part to a posted program, and from there the manual</source>
+   <translation>Öffnet den Rundgang vom Teil zum fertigen Programm (englisch), und von dort das Handbuch</translation>
+  </message>
+  <message>
+   <source>Tool Axis Tour</source>
+   <translation>Rundgang durch Tool Axis</translation>
   </message>
  </context>
  <context>

@@ -14,6 +14,7 @@ from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document
+from toolaxis.job.planning import pipeline
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.rack import _merge, _Screen, _Waiting
@@ -317,6 +318,18 @@ def test_stopped_in_the_choice_of_the_next_tool_it_keeps_all_of_a_tool(monkeypat
     made = ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1)
     assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["1", "2"]
     assert whole_area(made) == pytest.approx(made.account.area) and made.account.not_begun > 24 * 2
+
+
+def test_stopped_in_the_proof_of_what_is_out_of_reach_it_keeps_the_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: stopped after minutes, with only that proof to do, nothing was left."""
+
+    def _stopped(plan: Plan, jobs: object, progress: Progress) -> Plan:
+        raise Cancelled("cancelled by the user")
+
+    monkeypatch.setattr(pipeline, "with_unreachable", _stopped)
+    made = ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1)
+    assert made.outcome == "cancelled"
+    assert [op.face.label for op in made.operations if op.done] == ["1", "2", "1.2"]
 
 
 @pytest.mark.parametrize("given, said", [

@@ -168,6 +168,7 @@ def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
     job, = make_jobs(document, [operation])
     job.PostProcessor, job.PostProcessorArgs, job.Fixtures = "grbl", "--no-header", ["G58"]
     count, lines = len(document.Objects), len(job.Operations.Group[0].Gcode)
+    labels = sorted(thing.Label for thing in document.Objects)
     operation.Scallop = 0.5
     document.recompute()
     assert operation.Stale
@@ -175,6 +176,7 @@ def test_made_again_it_takes_the_place_of_the_old_one(document, parts):
     apply(document, inputs, parts.known_plan(inputs, Vector(*op.orientation.axis)), operation)
     again, = make_jobs(document, [operation])
     assert len(document.Objects) == count and len(again.Operations.Group[0].Gcode) < lines
+    assert sorted(thing.Label for thing in document.Objects) == labels, "nothing has another name"
     assert (again.PostProcessor, again.PostProcessorArgs, again.Fixtures) == ("grbl", "--no-header", ["G58"])
 
 
@@ -185,8 +187,10 @@ def test_what_a_user_put_into_a_job_stays(document, parts):
     operation, _ = planned(document, parts, thing, parts.sculptured_name(thing))
     job, = make_jobs(document, [operation])
     mine = Custom.Create("Mine", parentJob=job)
+    passes = job.Operations.Group[0].Label
     again, = make_jobs(document, [operation])
     assert again.Name != job.Name and job.Operations.Group == [mine]
+    assert again.Operations.Group[0].Label == passes
     assert jobs_of(operation) == [again]
 
 

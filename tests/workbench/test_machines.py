@@ -17,7 +17,7 @@ import toolaxis as ta
 from toolaxis.errors import Cancelled, InvalidInput
 from toolaxis.machine.body_poses import beside_part
 from toolaxis.machine.kinematics import forward
-from toolaxis.machine.library import library
+from toolaxis.machine.library import library, load_machine
 from toolaxis.progress import NO_PROGRESS, Progress
 
 TOOL = ta.Tool.torus(diameter=6, corner_radius=1, stickout=30, holder=[(10, 0), (10, 40)])
@@ -33,6 +33,8 @@ def mounted():
 
 def test_the_library_and_the_users_folder_are_offered(tmp_path):
     assert set(library()) <= set(machine_limits.available())
+    with_bodies = [bool(load_machine(name).bodies) for name in machine_limits.available().values()]
+    assert with_bodies == sorted(with_bodies, reverse=True) and with_bodies[0], "those that can be seen come first"
     (tmp_path / "mine.toml").write_text(library()["ab-trunnion"].read_text())
     preferences = FreeCAD.ParamGet(PLACE)
     preferences.SetString("MachinesFolder", str(tmp_path))

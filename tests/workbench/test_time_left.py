@@ -39,5 +39,23 @@ def test_another_number_of_pieces_begins_anew():
     assert left.words("proof (1 of 16)", -1.0, 20.0) == "20 s so far"
 
 
+def test_pieces_of_one_tool_are_not_all_the_work():
+    """Found: what was left of the pieces of one tool was told as what was left of all tools."""
+    left = TimeLeft(-30.0)
+    for second in range(40):
+        words = left.words(f"Ball D2: reach: face 4.2a ({second // 20 + 1} of 3): axes", -1.0, float(second))
+    assert words == "1:09 min so far, about 20 s left of this step"
+
+
+def test_what_follows_on_pieces_is_not_told_by_them():
+    """Found: "about 10 s left", from the last pieces of a tool, all through the proof that followed."""
+    left = TimeLeft(-30.0)
+    for second in range(40):
+        left.words(f"face 4a ({second // 20 + 1} of 3): axes", -1.0, float(second))
+    for second in range(40, 60):
+        words = left.words("proof of what is out of reach", 0.0, float(second))
+        assert words == f"{clock(second + 30)} so far"
+
+
 def test_minutes_have_seconds():
     assert [clock(seconds) for seconds in (0.4, 59, 60, 125.6)] == ["0 s", "59 s", "1:00 min", "2:06 min"]

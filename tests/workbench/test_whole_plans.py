@@ -144,7 +144,7 @@ def test_a_plan_says_what_became_of_its_part_and_its_operations(divided, change,
 def test_faces_left_to_clean_up_are_told_apart_from_those_without_an_axis(divided):
     from dataclasses import replace
 
-    from freecad.toolaxis.gui.plan.outcome import left_to_clean_up, outcome_sentence
+    from freecad.toolaxis.gui.plan.outcome import figures, left_to_clean_up, outcome_sentence
 
     from toolaxis.plan.zone import Zone
 
@@ -154,14 +154,37 @@ def test_faces_left_to_clean_up_are_told_apart_from_those_without_an_axis(divide
     left = replace(without, zones=(Zone(second.face.outline, second.face.area),))
     third = replace(without, number=3)
     for operations, words, bad in (
-            ((first, second), "Every face has an axis.", False),
-            ((first, left), "1 of 2 faces have an axis, 1 are left to a clean-up tool. OK", False),
+            ((first, second), f"Every face has an axis. {figures(plan)} OK", False),
+            ((first, left), "1 of 2 faces have an axis, 1 are left to a clean-up tool. ", False),
             ((first, without), "1 of 2 faces have an axis; the reasons", True),
             ((first, left, third), "1 of 3 faces have an axis, 1 are left to a clean-up tool, 1 have none;", True)):
         found = replace(plan, operations=operations)
         text, warns = outcome_sentence(found)
         assert text.startswith(words) and warns == bad
         assert left_to_clean_up(found) == {op.number for op in operations if op is left}
+
+
+def test_the_headline_has_time_passes_step_over_and_axes_over_all(divided):
+    from dataclasses import replace
+
+    from freecad.toolaxis.gui.plan.outcome import figures, outcome_sentence
+    from freecad.toolaxis.gui.widgets.quantity import length_text
+    from freecad.toolaxis.services.time_left import clock
+
+    _, plan = divided
+    first, second = plan.operations
+    count = first.orientation.passes + second.orientation.passes
+    lengths = [op.orientation.length for op in plan.operations]
+    widths = [op.orientation.average_strip_width for op in plan.operations]
+    mean = sum(a * b for a, b in zip(lengths, widths, strict=True)) / sum(lengths)
+    assert figures(plan) == (f"{clock(plan.seconds)}, passes: {count}, mean step-over {length_text(mean)}, "
+                             f"axes: {plan.orientations}.")
+    half = replace(plan, operations=(first, replace(second, path=None)), outcome="cancelled")
+    text, bad = outcome_sentence(half)
+    assert text == f"Stopped with 1 finished. {figures(half)} OK puts what is finished into the document." and bad
+    assert f"passes: {first.orientation.passes}," in text
+    nothing = replace(half, operations=(replace(first, path=None), replace(second, path=None)))
+    assert "OK" not in outcome_sentence(nothing)[0], "OK is locked then"
 
 
 def test_other_blades_are_links_that_follow(bladed, tmp_path):

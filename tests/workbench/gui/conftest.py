@@ -126,6 +126,7 @@ class Desk:
 
     def _record(self):
         """Let task panels and windows of pictures be known from when they are made until Qt deletes their forms."""
+        from freecad.toolaxis.gui.manual.window import ManualWindow
         from freecad.toolaxis.gui.pictures.window import PictureWindow
         from freecad.toolaxis.gui.widgets.panel import Panel
 
@@ -138,7 +139,7 @@ class Desk:
                 form_of(one).destroyed.connect(lambda *_: self.opened.remove(known))
             return __init__
 
-        for kind in (Panel, PictureWindow):
+        for kind in (Panel, PictureWindow, ManualWindow):
             kind.__init__ = recorded(kind.__init__)
 
     def pump(self, seconds=0.05):
@@ -333,18 +334,18 @@ class Desk:
         """What an entry of a table or a list says."""
         return view.model().index(row, column).data()
 
-    def around(self, form):
-        """The area that a task panel scrolls in, or None."""
-        above = form.parentWidget()
+    def around(self, widget):
+        """The area that a widget, or a task panel, scrolls in, or None."""
+        above = widget.parentWidget()
         while above is not None and not self.is_a(above, self.widgets.QScrollArea):
             self.held.append(above)  # in FreeCAD 1.0 those of what is in a widget end with Python's object of it
             above = above.parentWidget()
         self.held.append(above)
         return above
 
-    def down(self, form, widget):
-        """Scroll the task panel until a widget is in sight."""
-        above = self.around(form)
+    def down(self, widget):
+        """Scroll a page of a task panel, or the panel, until a widget is in sight."""
+        above = self.around(widget)
         if above is not None:
             above.ensureWidgetVisible(widget, 0, 400)
             self.pump(0.1)
@@ -407,6 +408,17 @@ def desk(_desk):
     assert not _desk.errors, _desk.errors
     assert not _desk.reported()[before:], _desk.reported()[before:]
     assert not _desk.kept(), _desk.kept()
+
+
+@pytest.fixture
+def german(desk):
+    """FreeCAD in German, and in English again afterwards."""
+    desk.gui.setLocale("de")
+    desk.pump(0.3)
+    yield desk
+    desk.tidy()
+    desk.gui.setLocale("en")
+    desk.pump(0.3)
 
 
 @pytest.fixture(scope="session")

@@ -112,6 +112,7 @@ def test_two_documents(desk, part_file):
 
 def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
     import FreeCAD
+    from freecad.toolaxis.gui.widgets.quantity import area_text
 
     part, face = wavy
     document = part.Document
@@ -130,7 +131,9 @@ def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
     desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
     texts = {desk.text(form.faces, k) for k in range(form.faces.count())}
-    assert texts == {f"{box.Label}: Face1", f"{link.Label}: Round.Face1", f"{part.Label}: {face}"}, texts
+    assert texts == {f"Face1, {area_text(box.Shape.Face1.Area)}, {box.Label}",
+                     f"Round.Face1, {area_text(box.Shape.Face1.Area)}, {link.Label}",
+                     f"{face}, {area_text(part.Shape.getElement(face).Area)}, {part.Label}"}, texts
     assert form.compute.isEnabled(), form.message.text()
 
 
@@ -156,3 +159,32 @@ def test_tools_of_a_cam_job_are_offered_and_other_bodies_can_be_avoided(desk, wa
     assert float(desk.shown(form.diameter).split()[0]) == pytest.approx(float(controller.Tool.Diameter), abs=5e-4)
     bodies = [desk.text(form.avoid, k) for k in range(form.avoid.count())]
     assert bodies == ["Clamp"]
+
+
+def test_faces_of_a_large_list_are_found_and_taken_off(desk, wavy):
+    """Filtered by name and by area; what is not shown is not removed."""
+    part = wavy[0]
+    count = len(part.Shape.Faces)
+    form = desk.start(part, *[f"Face{k}" for k in range(1, count + 1)])
+    assert form.facesTold.text() == f"{count} of {part.Label}"
+    areas = sorted(face.Area for face in part.Shape.Faces)
+    limit = (areas[0] + areas[-1]) / 2
+    small = sum(area < limit for area in areas)
+
+    def seen():
+        return sum(not form.faces.isRowHidden(row) for row in range(form.faces.count()))
+
+    desk.type(form.facesFilter, "FACE1")
+    assert seen() == sum(str(k).startswith("1") for k in range(1, count + 1)) < count
+    form.faces.selectAll()
+    desk.type(form.facesFilter, "nowhere")
+    desk.press(form.removeFaces)
+    assert not seen() and form.faces.count() == count, "what is not seen is not removed"
+    desk.type(form.facesFilter, f"< {limit:.3f}")
+    assert seen() == small
+    form.faces.selectAll()
+    desk.press(form.removeFaces)
+    assert form.facesTold.text() == f"{count - small} of {part.Label}"
+    form.facesFilter.clear()
+    assert seen() == form.faces.count() == count - small
+    desk.shot("98-faces")

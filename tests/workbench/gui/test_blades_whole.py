@@ -68,6 +68,7 @@ def test_a_part_with_blades_is_planned_whole(desk, name):
     desk.shot(f"80-{name}-tool")
     form.tabs.setCurrentWidget(form.jobTab)
     desk.type(form.scallop, "0.1 mm")
+    form.tabs.setCurrentWidget(form.advancedTab)
     if regions:
         form.regions.setCurrentIndex(2)
         form.regionsNumber.setValue(regions)
@@ -82,7 +83,6 @@ def test_a_part_with_blades_is_planned_whole(desk, name):
     desk.pump(2.0)
     told["shown"] = pauses.taken()
     desk.shot(f"81-{name}-planned")
-    desk.down(form, form.message)
     desk.shot(f"82-{name}-message")
     message = form.message.text()
     begin = time.perf_counter()

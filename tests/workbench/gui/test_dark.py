@@ -5,7 +5,7 @@ def test_panels_in_the_dark(desk, wavy):
     part, face = wavy
     form = desk.start(part, face)
     desk.type(form.scallop, "0.05 mm")
-    for number, name in enumerate(("job", "tool", "limits"), 1):
+    for number, name in enumerate(("job", "tool", "advanced"), 1):
         form.tabs.setCurrentWidget(getattr(form, f"{name}Tab"))
         desk.shot(f"{number}-{name}")
     form.tabs.setCurrentWidget(form.toolTab)
@@ -20,7 +20,7 @@ def test_panels_in_the_dark(desk, wavy):
     desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")
     desk.hover(chart, centre)
     desk.shot("6-tried")
-    desk.down(form, form.results)
+    desk.down(form.results)
     desk.shot("6-tried-below")
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")

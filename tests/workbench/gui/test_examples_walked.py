@@ -128,7 +128,7 @@ def filled(walk, part):
     desk.outline(form.holder, HOLDER)
     walk.seen("tool")
     if asked.limited:
-        form.tabs.setCurrentWidget(form.limitsTab)
+        form.tabs.setCurrentWidget(form.jobTab)
         names = [form.limits.itemText(k) for k in range(form.limits.count())]
         form.limits.setCurrentIndex(next(k for k in range(form.limits.count())
                                          if MACHINE in (form.limits.itemData(k) or "")))
@@ -136,6 +136,7 @@ def filled(walk, part):
         assert len(names) > 5, names
     form.tabs.setCurrentWidget(form.jobTab)
     desk.type(form.scallop, asked.scallop)
+    form.tabs.setCurrentWidget(form.advancedTab)
     form.regions.setCurrentIndex(2)
     form.regionsNumber.setValue(asked.regions)
     if asked.shared:
@@ -169,10 +170,10 @@ def locked(walk, form):
     form.operation.setCurrentIndex(next(k for k, title in enumerate(titles) if ":" not in title))  # one with an axis
     if chart.picture is None:
         assert "shared by sub-surfaces" in chart.reason
-        desk.down(form, form.lockAxis)
+        desk.down(form.lockAxis)
         form.lockAxis.click()
     else:
-        desk.down(form, chart)
+        desk.down(chart)
         free = chart.picture.axes[chart.picture.reason == 0]
         away = np.abs(np.arccos(np.clip(free @ form_axis(chart), -1, 1)) - 0.1)
         for axis in free[np.argsort(away, kind="stable")][:8]:

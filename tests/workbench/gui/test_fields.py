@@ -97,7 +97,7 @@ def test_a_sound_layout_is_loaded_once(desk, monkeypatch):
 
 
 #: Classes of widgets that show or hold others, and what is done by mouse or keys goes to those.
-PASSIVE = ("QWidget", "QLabel", "QGroupBox", "QProgressBar", "QTabWidget", "QFrame", "QScrollArea")
+PASSIVE = ("QWidget", "QLabel", "QGroupBox", "QProgressBar", "QTabWidget", "QFrame", "QScrollArea", "QSplitter")
 
 
 def layouts():

@@ -26,6 +26,7 @@ def test_a_moving_axis_is_chosen_refused_computed_and_drawn(desk, wavy, tmp_path
     desk.type(form.diameter, "6 mm")
     form.tabs.setCurrentWidget(form.jobTab)
     desk.type(form.scallop, "0.3 mm")
+    form.tabs.setCurrentWidget(form.advancedTab)
     assert not form.roughness.isVisible() and form.method.isEnabled() and form.passes.isEnabled()
     form.method.setCurrentIndex(form.method.findText("greatest jerk along passes"))
     form.passes.setCurrentIndex(form.passes.findText("in parallel planes"))
@@ -45,9 +46,8 @@ def test_a_moving_axis_is_chosen_refused_computed_and_drawn(desk, wavy, tmp_path
     desk.computed(form)
     assert "'multiscale' does not serve face" in form.message.text() and names(document) == before
     assert not desk.standard_button("Ok").isEnabled()
-    desk.down(form, form.message)
     desk.shot("69-strategy-in-vain")
-    form.tabs.setCurrentWidget(form.jobTab)
+    form.tabs.setCurrentWidget(form.advancedTab)
     choose(form, "sturz")
     desk.computed(form)
     assert "Every face has an axis" in form.message.text() and names(document) == before

@@ -94,6 +94,21 @@ def test_plan_and_program_are_written(desk, operation, recorded, tmp_path):
     desk.shot("80-export")
 
 
+def test_a_report_that_cannot_be_made_does_not_stop_the_program(desk, operation, monkeypatch, tmp_path):
+    """Found: with the report ticked and no jinja2 nothing was written."""
+    from freecad.toolaxis.gui.export import panel
+
+    monkeypatch.setattr(panel, "missing_for_report", lambda: ["jinja2"])
+    form = export_panel(desk)
+    assert not form.report.isEnabled() and not form.report.isChecked() and form.report.text().endswith("needs jinja2")
+    desk.type(form.folder, str(tmp_path / "plan"))
+    form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
+    form.offsetZ.setValue(60)
+    form.machine.setCurrentIndex(form.machine.findData("bc-table-table"))
+    written(desk, form)
+    assert (tmp_path / "plan" / "program-linuxcnc.ngc").exists(), form.message.text()
+
+
 def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
     form = export_panel(desk)
     desk.type(form.folder, str(tmp_path / "plan"))

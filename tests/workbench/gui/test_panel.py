@@ -27,8 +27,8 @@ def test_plan_from_selection_to_objects_and_back(desk, wavy, form, remembered):
     desk.shot("1-job")
     form.tabs.setCurrentWidget(form.toolTab)
     desk.shot("2-tool")
-    form.tabs.setCurrentWidget(form.limitsTab)
-    desk.shot("3-limits")
+    form.tabs.setCurrentWidget(form.advancedTab)
+    desk.shot("3-advanced")
     desk.computed(form)
     assert "Every face has an axis" in form.message.text()
     assert form.tabs.currentWidget() is form.resultTab
@@ -80,12 +80,12 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
         return form.operation.currentText(), view.map.picture, form.cost.text()
 
     view.show_growing(first, faces[2], titles)
-    assert shown() == ("Face 2", first, "Face 2 (1 of 3): the axes looked at so far")
+    assert shown() == ("Face 2", first, "Face 2: the axes looked at so far")
     assert not form.operation.isHidden() and form.operation.itemText(2) == "Face 7: not begun"
     view.show_growing(second, faces[5], titles)
-    assert shown() == ("Face 5", second, "Face 5 (2 of 3): the axes looked at so far"), "follows what is computed"
+    assert shown() == ("Face 5", second, "Face 5: the axes looked at so far"), "follows what is computed"
     form.operation.setCurrentIndex(2)
-    assert shown() == ("Face 7: not begun", None, "Face 7 (3 of 3): no axis looked at yet")
+    assert shown() == ("Face 7: not begun", None, "Face 7: no axis looked at yet")
     form.operation.setCurrentIndex(0)
     assert shown()[1] is first
     view.show_growing(third, faces[5], titles)
@@ -93,7 +93,7 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
     form.operation.setCurrentIndex(1)
     assert shown()[1] is third
     view.show_growing(second, faces[7], titles)
-    assert shown() == ("Face 7", second, "Face 7 (3 of 3): the axes looked at so far")
+    assert shown() == ("Face 7", second, "Face 7: the axes looked at so far")
     view.clear()
     assert view.map.picture is None and form.operation.isHidden()
 
@@ -146,7 +146,8 @@ IMPOSSIBLE = (("corner", "30 mm", "corner radius"), ("diameter", "0 mm", "diamet
 def test_impossible_values_lock_compute_with_the_reason(desk, form):
     for field, text, words in IMPOSSIBLE:
         widget = getattr(form, field)
-        form.tabs.setCurrentWidget(form.jobTab if form.jobTab.isAncestorOf(widget) else form.toolTab)
+        form.tabs.setCurrentWidget(next(tab for tab in (form.jobTab, form.toolTab, form.advancedTab)
+                                        if tab.isAncestorOf(widget)))
         good = desk.shown(widget)
         desk.type(widget, text)
         assert not form.compute.isEnabled() and words in form.message.text(), (field, text)
@@ -174,7 +175,6 @@ def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
 
 
 def test_limits_that_leave_no_axis(desk, form):
-    form.tabs.setCurrentWidget(form.limitsTab)
     form.limits.setCurrentIndex(1)
     form.limitZ.setValue(-1.0)
     desk.type(form.cone, "10 deg")

@@ -49,18 +49,20 @@ def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
     assert not form.faces.count() and not form.compute.isEnabled()
     form.rack.setCurrentIndex(form.rack.findText("general rack"))
     desk.pump(0.1)
-    assert form.facesGroup.title() == "Faces: 5" and form.faces.count() == 5 and form.compute.isEnabled()
+    assert form.facesTold.text() == "5 of Grooved" and form.faces.count() == 5 and form.compute.isEnabled()
     assert form.rackTools.count() > 10
+    assert desk.text(form.avoid, 0) == "no other body in the document", "what is machined is not to be avoided"
     desk.shot("89-general-rack")
 
 
 def test_a_rack_is_chosen_without_typing_a_tool(desk, form):
-    assert form.rack.currentText() == "my-rack.toml" and form.facesGroup.title() == "Faces: 1"
-    assert form.mostTools.isVisible() and form.compute.isEnabled()
+    assert form.rack.currentText() == "my-rack.toml" and form.facesTold.text() == "1 of Grooved"
+    assert form.compute.isEnabled()
     for name in ("strategy", "regions", "orientations", "compare"):
         assert not getattr(form, name).isEnabled(), name
     form.tabs.setCurrentWidget(form.toolTab)
-    assert form.rackTools.isVisible() and not form.diameter.isVisible() and not form.holder.isVisible()
+    assert form.mostTools.isVisible() and form.rackTools.isVisible()
+    assert not form.diameter.isVisible() and not form.holder.isVisible()
     assert [desk.text(form.rackTools, row) for row in range(form.rackTools.count())] == [
         "T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
     desk.shot("90-rack")
@@ -110,7 +112,6 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     desk.computed(form)
     assert " machined" in form.message.text() and "with 2 of 2 tools" in form.message.text()
     assert "OK puts the plan into the document" in form.message.text()
-    assert form.account.isVisible() and form.account.text() in form.message.text()
     table = form.toolTable
     assert [desk.text(table, row) for row in range(2)] == ["T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
     assert not form.lock.isVisible() and not form.turnFeed.isVisible()

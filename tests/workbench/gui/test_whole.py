@@ -62,6 +62,7 @@ def test_two_sub_surfaces_stand_in_the_tree_and_go_with_one_undo(desk, roof, for
     document = roof[0].Document
     before = names(document)
     form.regions.setCurrentIndex(2)
+    form.tabs.setCurrentWidget(form.advancedTab)
     assert form.blades.isChecked() and form.regionsNumber.isVisible() and form.regionsNumber.value() == 2
     desk.shot("60-division")
     desk.computed(form)

@@ -1,4 +1,4 @@
-"""The workbench "Tool Axis" and its commands; nothing heavy is imported before a command runs."""
+"""The workbench "Tool Axis" and its commands; what is heavy is loaded beside the window."""
 
 import FreeCAD
 import FreeCADGui
@@ -12,6 +12,9 @@ FreeCADGui.updateLocale()
 FreeCADGui.addIconPath(str(RESOURCES / "icons"))
 FreeCADGui.addPreferencePage(str(RESOURCES / "ui" / "preferences.ui"), QT_TRANSLATE_NOOP("QObject", "Tool Axis"))
 
+#: How long the status bar tells what goes on, ms.
+_TOLD = 8000
+
 
 class ToolAxisWorkbench(FreeCADGui.Workbench):
     """Tool orientations for multi-axis machining of sculptured surfaces."""
@@ -22,7 +25,7 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self):
         """Register the commands, once, when the workbench is first shown."""
-        from freecad.toolaxis.gui.commands import examples
+        from freecad.toolaxis.gui.commands import examples, tour
         from freecad.toolaxis.gui.commands.toolbar import register
         from freecad.toolaxis.gui.widgets.error_report import offer_report
         from freecad.toolaxis.services.background import hear_errors
@@ -33,7 +36,17 @@ class ToolAxisWorkbench(FreeCADGui.Workbench):
         menu = QT_TRANSLATE_NOOP("Workbench", "&Tool Axis")
         self.appendMenu(menu, names)
         self.appendMenu([menu, QT_TRANSLATE_NOOP("Workbench", "Examples")], examples.register())
+        self.appendMenu(menu, tour.register())
+        self.appendMenu("&Help", tour.register())
         self._names = names
+
+    def Activated(self):
+        """Load the libraries meanwhile: opening the first panel does not wait for them then."""
+        from freecad.toolaxis.services.background import load_ahead
+
+        if load_ahead():
+            told = FreeCAD.Qt.translate("ToolAxis", "Tool Axis loads its libraries in the background")
+            FreeCADGui.getMainWindow().statusBar().showMessage(told, _TOLD)
 
     def ContextMenu(self, recipient):
         """Offer the commands where something is selected.

@@ -344,7 +344,7 @@ def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[
             else:
                 area = sum(face.area for face in faces)
                 made = RackPlanner([replace(job, asked_area=area) for job in jobs], most).plan(faces, progress)
-            return made if made.outcome == "cancelled" else with_unreachable(made, jobs, progress)
+            return went_on(made, lambda plan: with_unreachable(plan, jobs, progress))
         except Cancelled:
             return replace(jobs[0].empty(), tools=tuple(job.tool for job in jobs))
 

@@ -3,11 +3,8 @@
 from contextlib import suppress
 from pathlib import Path
 
-import FreeCAD
 from freecad.toolaxis.document.machine import machine_of
 from freecad.toolaxis.document.preferences import machines_folder
-
-translate = FreeCAD.Qt.translate
 
 #: How such a text begins: "machine:bc-table-table@0,0,60".
 PREFIX = "machine:"
@@ -23,11 +20,21 @@ def available():
     """
     from toolaxis.machine.library import library
 
-    found = {name: name for name in library()}
+    found = {name: name for name in sorted(library(), key=lambda name: (not _has_bodies(name), name))}
     for folder in folders():
         for path in sorted(path for ending in ("*.toml", "*.fcm") for path in folder.glob(ending)):
             found.setdefault(path.stem if path.stem not in found else path.name, str(path))
     return found
+
+
+def _has_bodies(name):
+    """Whether a machine of the library has bodies: one without cannot be seen, and nothing meets it."""
+    from toolaxis.errors import InvalidInput
+    from toolaxis.machine.library import load_machine
+
+    with suppress(InvalidInput):  # that is said when it is chosen
+        return bool(load_machine(name).bodies)
+    return False
 
 
 def offered(document):
@@ -40,8 +47,7 @@ def offered(document):
     found, standing = [], machine_of(document)
     if standing is not None:
         found.append((standing.Label, text_of(standing.Machine, tuple(standing.Offset))))
-    return found + [(translate("ToolAxis", "machine {}").format(shown), text_of(name))
-                    for shown, name in available().items()]
+    return found + [(shown, text_of(name)) for shown, name in available().items()]
 
 
 def folders():

@@ -40,6 +40,8 @@ _hearers: list[Callable[[str, str], Any]] = []
 _windows: list[ref] = []
 #: Set when what was there before the first panel after the libraries were loaded is left alone for good.
 _settled = Event()
+#: The work that loads the libraries before anything is asked for, once it has begun.
+_ahead: list["BackgroundWork"] = []
 #: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
 _running: set["_Thread"] = set()
 
@@ -281,6 +283,14 @@ class BackgroundWork(QtCore.QObject):
             self.cancelled.emit()
         else:
             self.done.emit(thread.result)
+
+
+def load_ahead() -> bool:
+    """Load the libraries that computations need in a thread, once; whether that has begun now."""
+    if _ahead or _load.cache_info().currsize:
+        return False
+    _ahead.append(BackgroundWork(lambda _: True).start())
+    return True
 
 
 class _Keeper(QtCore.QObject):

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from itertools import count
 from pathlib import Path
 
@@ -47,6 +48,11 @@ class Wish:
     machine: str = ""
     offset: tuple | None = None
     report: bool = False
+
+
+def missing_for_report():
+    """Names of the packages that the page needs and this Python does not have."""
+    return [name for name in ("jinja2", "plotly") if find_spec(name) is None]
 
 
 def export(operations, folder, wish=None, progress=None):

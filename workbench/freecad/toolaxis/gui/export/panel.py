@@ -10,7 +10,7 @@ from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import BackgroundWork, sentence
-from freecad.toolaxis.services.export import Wish, task
+from freecad.toolaxis.services.export import Wish, missing_for_report, task
 from freecad.toolaxis.services.macros import list_of, record
 from freecad.toolaxis.services.messages import line_of
 from PySide import QtWidgets
@@ -65,6 +65,13 @@ class ExportPanel(Panel):
         for spin in self._spins:
             spin.setMinimumWidth(50)
             spin.setSizePolicy(QtWidgets.QSizePolicy.Ignored, QtWidgets.QSizePolicy.Fixed)
+        missing = missing_for_report()
+        if missing:  # all the rest can be written
+            form.report.setText(translate("ToolAxis", "HTML report: needs {}").format(", ".join(missing)))
+            form.report.setToolTip(translate("ToolAxis", "Install {} by the Addon Manager for reports.").format(
+                ", ".join(missing)))
+            form.report.setChecked(False)
+            form.report.setEnabled(False)
         for shown, name in available().items():
             form.machine.addItem(shown, name)
         standing = machine_of(self.document)

@@ -168,8 +168,8 @@ class MachinePanel(Panel):
         mounted, rows, tools = found
         machine = mounted.machine
         assumed = ", ".join(machine.assumed)
-        self.form.about.setText(translate("ToolAxis", "{}: {}. Assumed: {}.").format(
-            machine.name, machine.source or "-", assumed or "-"))
+        self.form.about.setText(translate("ToolAxis", "{}. Assumed: {}.").format(machine.name, assumed or "-"))
+        self.form.about.setToolTip(machine.source)
         self._fill_table(machine, rows)
         lost = [self.operations[k].Label for k, (_, taken) in enumerate(rows) if taken < 0]
         self.stations = [(k, max(taken, 0)) for k, (ways, taken) in enumerate(rows) if ways]

@@ -1,6 +1,10 @@
 """Lists of panels: faces to machine, and bodies to avoid."""
 
+from contextlib import suppress
+
 import FreeCAD
+from freecad.toolaxis.document.read_shapes import number_in
+from freecad.toolaxis.gui.widgets.quantity import area_text, shown_unit, value_from_text
 from freecad.toolaxis.gui.widgets.table_entries import append, data_of
 from PySide import QtCore, QtGui, QtWidgets
 
@@ -21,6 +25,7 @@ class FaceList:
     def __init__(self, widget):
         self.widget = widget
         self._slots = []
+        self._areas, self._sought = [], ""
 
     def on_change(self, slot):
         """Call a slot without arguments whenever faces come or go.
@@ -44,6 +49,7 @@ class FaceList:
     @faces.setter
     def faces(self, faces):
         self.widget.clear()
+        self._areas.clear()
         if not self.add(faces):
             self._changed()
 
@@ -59,16 +65,59 @@ class FaceList:
         for thing, sub in faces:
             if (thing.Document.Name, thing.Name, sub) not in known:
                 known.add((thing.Document.Name, thing.Name, sub))
-                append(self.widget, f"{thing.Label}: {sub}", UserRole=(thing, sub))
+                area = _area_of(thing, sub)
+                append(self.widget, ", ".join([sub, *([] if area is None else [area_text(area)]), thing.Label]),
+                       UserRole=(thing, sub))
+                self._areas.append(area)
         if self.widget.count() > count:
+            self._filter()
             self._changed()
         return self.widget.count() - count
+
+    def summary(self):
+        """How many faces there are, and of which part; empty without any."""
+        things = list(dict.fromkeys(thing for thing, _ in self.faces))
+        if not things:
+            return translate("ToolAxis", "none")
+        whole = things[0].Label if len(things) == 1 else translate("ToolAxis", "{} parts").format(len(things))
+        return translate("ToolAxis", "{} of {}").format(self.widget.count(), whole)
+
+    def show_matching(self, text):
+        """Show only some faces; the others stay in the list.
+
+        Parameters
+        ----------
+        text : str
+            What stands in their names, or "< 5" for those with an area of less than 5 in the square of what lengths are
+            shown in; empty for all.
+        """
+        self._sought = text.strip()
+        self._filter()
+
+    def _filter(self):
+        """Hide what is not looked for, and take its mark away: nothing is removed unseen."""
+        for row in range(self.widget.count()):
+            hidden = not self._matches(row)
+            self.widget.setRowHidden(row, hidden)
+            if hidden:
+                self.widget.selectionModel().select(self.widget.model().index(row, 0),
+                                                    QtCore.QItemSelectionModel.Deselect)
+
+    def _matches(self, row):
+        if self._sought.startswith("<"):
+            limit = value_from_text(self._sought[1:], "mm")
+            if limit is None:
+                return True
+            area, scale = self._areas[row], shown_unit("mm")[1]
+            return area is not None and area < limit * scale
+        return self._sought.lower() in data_of(self.widget, row).lower()
 
     def remove_marked(self):
         """Remove the marked entries."""
         marked = sorted((index.row() for index in self.widget.selectedIndexes()), reverse=True)
         for row in marked:
             self.widget.model().removeRow(row)
+            del self._areas[row]
         if marked:
             self._changed()
 
@@ -84,6 +133,16 @@ class FaceList:
         if gone:
             self.faces = kept
         return gone
+
+
+def _area_of(thing, name):
+    """Area of a face, mm^2; None where it cannot be read."""
+    from toolaxis.cad.freecad.documents import shape_of
+
+    with suppress(Exception):  # it is refused with the reason when it is computed with
+        shape = shape_of(thing)
+        return float(shape.Faces[number_in(thing, shape, name) - 1].Area)
+    return None
 
 
 class BodyList:

@@ -4,6 +4,8 @@ import FreeCAD
 from freecad.toolaxis.document.plan_account import account_of
 from freecad.toolaxis.document.strategies import strategy_of
 from freecad.toolaxis.gui.plan.account import headline
+from freecad.toolaxis.gui.widgets.quantity import length_text
+from freecad.toolaxis.services.time_left import clock
 
 translate = FreeCAD.Qt.translate
 
@@ -28,18 +30,19 @@ def outcome_sentence(plan):
         return translate("ToolAxis", "Stopped before the first face had passes."), True
     if len(plan.tools) > 1:
         return _rack_sentence(plan)
-    if plan.outcome == "cancelled":
-        return translate("ToolAxis", "Stopped after {} of the faces; OK puts these into the document.").format(
-            count), True
     done, left = sum(op.done for op in plan.operations), len(left_to_clean_up(plan))
+    if plan.outcome == "cancelled":
+        return translate("ToolAxis", "Stopped with {} finished. {} OK puts what is finished into the document.").format(
+            done, figures(plan)), True
     if done == count and touched_once(plan):
         return translate("ToolAxis", "Every face has an axis, but two-point contact has one contact everywhere; the "
                                      "reasons are on the tab Axis. OK puts them into the document."), True
     if done == count:
-        return translate("ToolAxis", "Every face has an axis. OK puts them into the document."), False
+        return translate("ToolAxis", "Every face has an axis. {} OK puts them into the document.").format(
+            figures(plan)), False
     if done and done + left == count:
-        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool. OK puts them into "
-                                     "the document.").format(done, count, left), False
+        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them "
+                                     "into the document.").format(done, count, left, figures(plan)), False
     if left:
         return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the "
                                      "reasons are on the tab Axis.").format(done, count, left,
@@ -56,6 +59,24 @@ def _rack_sentence(plan):
     if plan.outcome == "cancelled":
         return translate("ToolAxis", "Stopped. {} OK puts what is finished into the document.").format(told), True
     return translate("ToolAxis", "{} OK puts the plan into the document.").format(told), plan.outcome != "complete"
+
+
+def figures(plan):
+    """What a plan comes to over all its operations, a sentence: time, passes, mean step-over and number of axes.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+        With an operation that has passes.
+    """
+    done = [op.orientation for op in plan.operations if op.done]
+    length = sum(found.length for found in done)
+    step = sum(found.average_strip_width * found.length for found in done) / length
+    told = [clock(plan.seconds), translate("ToolAxis", "passes: {}").format(sum(found.passes for found in done)),
+            translate("ToolAxis", "mean step-over {}").format(length_text(step))]
+    if plan.orientations:
+        told.append(translate("ToolAxis", "axes: {}").format(plan.orientations))
+    return ", ".join(told) + "."
 
 
 def touched_once(plan):

@@ -21,7 +21,7 @@ from freecad.toolaxis.gui.plan.outcome import outcome_sentence
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
-from freecad.toolaxis.gui.widgets.fields import load_form, tell
+from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
 from freecad.toolaxis.paths import RESOURCES
@@ -38,6 +38,10 @@ from PySide import QtCore, QtWidgets
 translate = FreeCAD.Qt.translate
 
 _TYPED = 0
+#: Tabs that scroll, each for itself, below what is always in sight.  The layout has all of it in a splitter with one
+#: side: FreeCAD gives a panel whose height depends on its width, as that of a label of several lines does, all the
+#: height it would like, and scrolls it as a whole; a splitter tells no such thing.
+_PAGES = ("jobTab", "toolTab", "advancedTab", "resultTab")
 #: Axes that make a map worth showing.
 _ENOUGH = 40
 
@@ -132,6 +136,7 @@ class PlanPanel(Panel):
         self.fields.racks.on_change(self._rack_chosen)
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
+        form.facesFilter.textChanged.connect(self.fields.faces.show_matching)
         form.faces.itemSelectionChanged.connect(self._point_out)
         form.tool.activated.connect(self._tool_chosen)
         form.compute.clicked.connect(self.compute)
@@ -146,14 +151,19 @@ class PlanPanel(Panel):
         nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
         self.problem = "; ".join(problems) or ("" if faces else nothing)
         self.fields.faces.add(faces)
+        self._offer_bodies()
+        self._changed()
+
+    def _offer_bodies(self):
+        """Offer all bodies to be avoided but those that are machined."""
         parts = [thing for thing, _ in self.fields.faces.faces]
         self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
-        self._changed()
 
     def _rack_chosen(self):
         """A rack machines whole parts: where no face was chosen, all of the only body is."""
         if self.fields.racks.chosen and not self.fields.faces.faces:
             self.fields.faces.add(faces_of_only_body(self.document))
+            self._offer_bodies()
 
     def _point_out(self):
         """Select in the 3D view what is marked in the list."""
@@ -182,9 +192,9 @@ class PlanPanel(Panel):
         """Something in the fields is different: check it, and lock OK until it is computed again."""
         if self.work is None:
             self.computed = None
-        count = len(self.fields.faces.faces)
-        faces = translate("ToolAxis", "Faces") if not count else translate("ToolAxis", "Faces: {}").format(count)
-        self.form.facesGroup.setTitle(faces)
+        told = self.fields.faces.summary()
+        self.form.facesTold.setText(told)
+        self.form.facesTold.setToolTip(told)
         self.refusal = self.fields.refusal()
         self._show_state()
 
@@ -193,13 +203,14 @@ class PlanPanel(Panel):
         form.compute.setEnabled(not computing and not self.refusal)
         form.stop.setEnabled(computing)
         form.progress.setVisible(computing)
-        for tab in (form.jobTab, form.toolTab, form.limitsTab, form.advancedTab, self.view.map, self.view.curve):
-            tab.setEnabled(not computing)
+        for page in (form.jobPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
+            page.setEnabled(not computing)
         if self.buttons is not None:
             with suppress(RuntimeError):
                 self.buttons.button(QtWidgets.QDialogButtonBox.Ok).setEnabled(self.ready)
         if not computing:
             self._tell(*self._state())
+        fit_pages(form, _PAGES)
 
     def _state(self):
         """The sentence that tells how things stand, and whether it is bad."""
@@ -384,12 +395,13 @@ def _growing(offered):
 
 def _make_plan(task, progress):
     """Plan and pictures; runs off the GUI thread."""
+    from toolaxis.errors import Cancelled
     from toolaxis.progress import NO_PROGRESS
 
     plan = task(progress)
     pictures = {}
     for op in plan.operations:
-        if plan.outcome != "cancelled":
+        with suppress(Cancelled):  # the plan is there: it is shown, whoever pressed Stop after its last step
             progress.report(translate("ToolAxis", "drawing the map"), op.number - 1, len(plan.operations))
         pictures[op.number] = axis_picture(plan, op, NO_PROGRESS)
     return plan, pictures

@@ -6,7 +6,7 @@ from freecad.toolaxis.document.plan_account import account_of
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.result_rows import fill, fill_baselines, measures, sentences
 from freecad.toolaxis.gui.axis_map.widget import HemisphereMap, no_map
-from freecad.toolaxis.gui.plan.account import fill_tools, headline
+from freecad.toolaxis.gui.plan.account import fill_tools
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.orientation_curve import OrientationCurve
 from freecad.toolaxis.gui.plan.outcome import left_to_clean_up
@@ -104,15 +104,13 @@ class AxisView(QtCore.QObject):
         self._show_operation()
 
     def show_account(self, account):
-        """Show what several tools come to.
+        """Show what each of several tools does; the panel's message has the headline.
 
         Parameters
         ----------
         account : freecad.toolaxis.document.plan_account.PlanAccount or None
             Nothing is shown for None.
         """
-        self.form.account.setText("" if account is None else headline(account))
-        self.form.account.setVisible(account is not None)
         fill_tools(self.form.toolTable, account)
 
     @property
@@ -165,9 +163,6 @@ class AxisView(QtCore.QObject):
         """A growing map, or None, and the sentence about it."""
         number = self._grown
         picture, title = self.growing[number] or (None, self.titles[number])
-        if len(self.growing) > 1:
-            place = list(self.growing).index(number) + 1
-            title = translate("ToolAxis", "{} ({} of {})").format(title, place, len(self.growing))
         if picture is None:
             return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
         return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)

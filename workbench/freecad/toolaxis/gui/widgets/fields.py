@@ -57,11 +57,42 @@ def load_form(name):
     else:
         raise RuntimeError(translate("ToolAxis", "FreeCAD has mixed up this panel with one that was closed: open it "
                                                  "once more, or start FreeCAD anew"))
+    form.wheel = WheelScrolls(form)
+    for child, kind in widgets.items():
+        if issubclass(kind, QtWidgets.QComboBox | QtWidgets.QAbstractSpinBox):
+            getattr(form, child).installEventFilter(form.wheel)
     for child in widgets:  # what a tooltip says is what "What's this?" says, where the layout has no more to say
         widget = getattr(form, child)
         if not widget.whatsThis():
             widget.setWhatsThis(widget.toolTip())
     return form
+
+
+class WheelScrolls(QtCore.QObject):
+    """Leaves the wheel over a combo box or a spin box to what is scrolled: scrolling a panel changes no field."""
+
+    def eventFilter(self, watched, event):
+        """Qt asks what becomes of an event."""
+        if event.type() != QtCore.QEvent.Wheel:
+            return False
+        event.ignore()  # it goes on to what the field stands in
+        return True
+
+
+def fit_pages(form, names):
+    """Make scroll areas wide enough for what is in them, so that they scroll up and down only.
+
+    Parameters
+    ----------
+    form : QWidget
+    names : sequence of str
+        Of QScrollArea widgets of its layout.
+    """
+    for name in names:
+        area = getattr(form, name)
+        width = area.widget().minimumSizeHint().width() + area.verticalScrollBar().sizeHint().width()
+        if area.minimumWidth() != width:
+            area.setMinimumWidth(width)
 
 
 def _sound(form, name, expected, known):

@@ -53,7 +53,7 @@ class ProgressLine:
         """
         self.stage = stage, share
         if self.listens():
-            self.bar.setMaximum(1000 if share >= 0 else 0)
+            self.bar.setMaximum(1000 if share > 0 else 0)  # as long as nothing is done, it shows that work goes on
             self.bar.setValue(int(1000 * max(share, 0.0)))
         self._show()
 

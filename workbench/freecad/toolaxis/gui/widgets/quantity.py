@@ -131,7 +131,7 @@ def value_from_text(text, unit):
 class QuantityBox(QtWidgets.QAbstractSpinBox):
     """A spin box for a quantity in one unit.
 
-    The wheel changes it only while it has the focus, so that scrolling a panel changes nothing.
+    The wheel scrolls the panel, and never changes it.
 
     Parameters
     ----------
@@ -218,16 +218,13 @@ class QuantityBox(QtWidgets.QAbstractSpinBox):
         return QtWidgets.QAbstractSpinBox.StepUpEnabled | QtWidgets.QAbstractSpinBox.StepDownEnabled
 
     def stepBy(self, steps):
-        """Add steps, for an arrow, a key or the wheel."""
+        """Add steps, for an arrow or a key."""
         self.set_value(round(self._value + steps * self.step, 9))
         self.selectAll()
 
     def wheelEvent(self, event):
-        """Leave the wheel to what is scrolled, unless this field has the focus."""
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
+        """Leave the wheel to what is scrolled."""
+        event.ignore()
 
     def sizeHint(self):
         """As wide as a long number with its unit."""
