@@ -31,7 +31,7 @@ CLEAN_UP = 2.0
 #: first and not more than the second.
 _LITTLE, _LITTLE_TIME, _SHARES = 1.5, 0.1, (5e-5, 3e-4)
 #: The same where axes are indexed: as a share of an index move, and of the value not more than the second.
-_LITTLE_OF_INDEX, _MOST_OF_INDEX = 1 / 6, 0.01
+_LITTLE_OF_INDEX, _MOST_OF_INDEX = 1 / 6, 0.003
 #: Places each way from which the ideal length of an axis is told.
 _IDEAL = 16
 
