@@ -23,6 +23,7 @@ from toolaxis.path.pass_layout import lay_out, pass_length
 from toolaxis.path.pass_pattern import FieldPasses, pattern_name
 from toolaxis.path.rest_material import RestFinder
 from toolaxis.plan.choices import AUTO, FIELD, ISO
+from toolaxis.search.cost import MachiningCost
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 
@@ -236,3 +237,13 @@ def test_the_ideal_length_needs_no_places_off_the_face() -> None:
     whole, inside = (tabulate_directions(trimmed, cut, 16, only_inside=only) for only in (False, True))
     assert len(inside.uv) == trimmed.contains(whole.uv).sum() < len(whole.uv)
     assert inside.ideal_length == pytest.approx(whole.ideal_length, rel=1e-12)
+
+
+def test_the_ideal_length_is_unknown_where_an_axis_leaves_no_strip() -> None:
+    """Found: a place that the axis does not see made the ideal length of 69 mm2 660 m."""
+    u = np.linspace(-15.0, 15.0, 7)
+    x, y = np.meshgrid(u, u, indexing="ij")
+    roof = Face.from_bspline(np.stack([x, y, -0.1 * x**2], axis=-1))
+    cost = MachiningCost(roof, BALL, H)
+    assert 900 / (2 * np.sqrt(2 * 6 * H)) < cost.ideal_length(np.array([0.0, 0.0, 1.0])) < 9000
+    assert cost.ideal_length(np.array([-np.sin(0.9), 0.0, np.cos(0.9)])) == 0.0

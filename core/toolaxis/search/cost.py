@@ -115,15 +115,16 @@ class MachiningCost:
         return made
 
     def ideal_length(self, axis: Array) -> float:
-        """What passes with an axis tend to as the scallop height goes to zero, mm; 0 where it is not known, or the work
-        that is allowed does not suffice.
+        """What passes with an axis tend to as the scallop height goes to zero, mm; 0 where it is not known, as where
+        the axis leaves no strip at one of the places that are looked at, or the work that is allowed does not suffice.
 
         Parameters
         ----------
         axis : (3,) array
         """
         try:
-            return tabulate_directions(self.face, self.cut(axis), _IDEAL, only_inside=True).ideal_length
+            table = tabulate_directions(self.face, self.cut(axis), _IDEAL, only_inside=True)
+            return table.ideal_length if table.cut_everywhere else 0.0
         except (OutOfWork, UnsupportedGeometry):
             return 0.0
 
