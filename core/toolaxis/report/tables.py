@@ -210,7 +210,7 @@ def open_table(plan: Plan) -> Table | None:
 
 def _titled(plan: Plan) -> str:
     """The tools of a plan, for the title of a table."""
-    return plan.named_tools if len(plan.tools) == 1 else f"{len(plan.used_tools)} tools"
+    return plan.named_tools if len(plan.used_tools) == 1 else f"{len(plan.used_tools)} tools"
 
 
 def _of_part(plan: Plan) -> str:
