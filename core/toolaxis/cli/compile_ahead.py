@@ -52,6 +52,7 @@ def compile_ahead() -> None:
     from toolaxis.plan.orientation import Orientation
     from toolaxis.plan.plan import Plan, PlanInputs
     from toolaxis.shape.face import Face
+    from toolaxis.shape.nearest import nearest
     from toolaxis.shape.nurbs import NurbsSurface
     from toolaxis.shape.part import Part
     from toolaxis.tools.tool import Tool
@@ -70,6 +71,7 @@ def compile_ahead() -> None:
     orientation = Orientation(axis, "u", path.passes, counted, path.length(), outcome="feasible")
     frame = work_coordinates(axis, np.array([1.0, 0.0, 0.0]), start, start)
     operation = Operation(1, waved, tool, orientation, path, frame)
+    nearest(waved, np.array([[-1.0, 5.0, 0.0], [5.0, 5.0, 1.0]]))  # beside the face, and over it
     verify_plan(Plan(Part((waved, below)), (tool,), PlanInputs(_SCALLOP), (operation,), (), start, "complete"))
 
 

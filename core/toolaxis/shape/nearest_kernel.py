@@ -58,7 +58,7 @@ def _contains(face: FaceRange, u: float, v: float) -> bool:
     return bool(u0 <= u <= u1 and v0 <= v <= v1)
 
 
-class _Step(NamedTuple):
+class _NearestStep(NamedTuple):
     """A step towards the nearest point: in u and v, and the half of what the squared distance falls by on it, mm^2."""
 
     u: float
@@ -67,7 +67,7 @@ class _Step(NamedTuple):
 
 
 @jit_inline
-def _newton(at: Array, target: Vector) -> _Step:
+def _newton(at: Array, target: Vector) -> _NearestStep:
     """A step of Newton's method down the squared distance, of Gauss and Newton's where the former would climb.
 
     at (6, 3): position and derivatives.
@@ -83,9 +83,9 @@ def _newton(at: Array, target: Vector) -> _Step:
         a, b, c = e * (1.0 + 1e-9), f, g * (1.0 + 1e-9)
     determinant = a * c - b * b
     if determinant <= 0.0:
-        return _Step(0.0, 0.0, 0.0)
+        return _NearestStep(0.0, 0.0, 0.0)
     u, v = (b * fv - c * fu) / determinant, (b * fu - a * fv) / determinant
-    return _Step(u, v, -0.5 * (u * fu + v * fv))
+    return _NearestStep(u, v, -0.5 * (u * fu + v * fv))
 
 
 @jit_inline

@@ -190,8 +190,8 @@ class RackPlanner:
         self._waiting = [one for one in self._waiting if one.tool != tool]
         if not now:
             return True
-        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, one.axis,
-                          others=self._axes_of(one), in_pieces=one.in_pieces) for label, one in now.items()]
+        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, others=self._axes_of(one),
+                          in_pieces=one.in_pieces) for label, one in now.items()]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, progress)
         stopped = made.outcome == "cancelled"
@@ -228,7 +228,8 @@ class RackPlanner:
                 self._rests.append(_rest_not_begun(one, left))
 
     def _axes_of(self, one: _Waiting) -> tuple[Array, ...]:
-        """Axes of earlier operations on the same sub-surface, those first that left what waits, and not too many."""
+        """Axes of earlier operations on the same sub-surface, those first that left what waits, and not too many; then
+        that of the choice of tools."""
         order = sorted(range(len(self._done)), key=lambda place: place not in one.left_by)
         found: list[Array] = []
         for op in (self._done[place] for place in order):
@@ -237,7 +238,7 @@ class RackPlanner:
                 continue
             if not any(np.array_equal(axis, other) for other in found):
                 found.append(axis)
-        return tuple(found[:_KNOWN])
+        return (*found[:_KNOWN], *(() if one.axis is None else (one.axis,)))
 
     def _name(self, one: _Waiting) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
