@@ -133,11 +133,13 @@ class _RestSeen:
 
 @dataclass(eq=False)
 class _KnownZone:
-    """A zone of which it is told when it is asked for the first time what it is.
+    """What is known of a zone, worked out when it is first asked for.
 
-    area : mm^2;  speck : whether it is too small or too shallow to be told;  at_wall : None before it is asked for.
+    zone : that piece of the sub-surface;  area : mm^2;  speck : whether it is too small or too shallow to be told;
+    at_wall : None before it is asked for.
     """
 
+    zone: Face
     area: float
     speck: bool
     at_wall: bool | None = None
@@ -240,19 +242,18 @@ class RestFinder:
         fresh = [zone for zone in zones if _name_zone(zone) not in self._known]
         for zone, area in zip(fresh, _areas(face, fresh), strict=True):
             speck = area <= _SPECK * self.tool.radius**2 or not _deep(zone, deep, nodes)
-            self._known[_name_zone(zone)] = _KnownZone(area, speck)
-        small, large = _partition_by(zones, lambda zone: self._known[_name_zone(zone)].speck)
+            self._known[_name_zone(zone)] = _KnownZone(zone, area, speck)
+        small, large = _partition_by([self._known[_name_zone(zone)] for zone in zones], lambda known: known.speck)
         told = tuple(map(self._tell, large))
-        if undercut(told) + sum(self._known[_name_zone(zone)].area for zone in small) > may_stay(told, face.area):
+        if undercut(told) + sum(known.area for known in small) > may_stay(told, face.area):
             told += tuple(map(self._tell, small))
         return tuple(sorted(told, key=lambda zone: -zone.area))
 
-    def _tell(self, zone: Face) -> Zone:
+    def _tell(self, known: _KnownZone) -> Zone:
         """A zone as it is told."""
-        known = self._known[_name_zone(zone)]
         if known.at_wall is None:
-            known.at_wall = _at_wall(zone, self.walls)
-        return Zone(zone.trims, known.area, known.at_wall)
+            known.at_wall = _at_wall(known.zone, self.walls)
+        return Zone(known.zone.trims, known.area, known.at_wall)
 
 
 def _name_zone(zone: Face) -> bytes:

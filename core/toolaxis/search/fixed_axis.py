@@ -294,7 +294,7 @@ def first_proven(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis],
     found = snap_to_increments(ledger, found)
     if found:
         allow_proof()
-    if found and not found[0].length <= job.worth.index_length:  # shorter cuts differ by less than matters
+    if found and found[0].length > job.worth.index_length:  # shorter cuts differ by less than matters
         with suppress(OutOfWork), up_to(_ORDERED):
             found = least_made(job.worth, found, job.made)
     return _first_accepted(job, ledger, found, method)
@@ -338,8 +338,8 @@ def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> 
     if done.longer <= _LONGER or job.worth.feed is not None:
         return None
     other = CountedAxis(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
-    gain = done.value - other.value
-    if not gain > (job.worth.index_length if job.worth.objective == "length" else 0.0):
+    worthwhile = job.worth.index_length if job.worth.objective == "length" else 0.0
+    if not done.value - other.value > worthwhile:
         return None
     again = check_candidate(replace(job, laid_for=done.laid_for), other)
     return again if again.proof.witness is None and again.value < done.value else None

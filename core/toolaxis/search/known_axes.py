@@ -7,6 +7,7 @@ from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.local_search import CountedAxis, count_row, proven, sound
 from toolaxis.search.machine_limits import snap_to_increments
 from toolaxis.search.messages import AS_GOOD, KNOWN_AXIS
+from toolaxis.work import allow_proof
 
 #: Known axes that the proof may refuse before others are looked for.
 _REFUSED = 2
@@ -44,6 +45,7 @@ def find_known_axis(job: FaceProblem, ledger: AxisTable) -> tuple[CheckedCandida
         one = _count_where_good(job, ledger, row)
         if one is None:
             continue
+        allow_proof()
         done = check_candidate(job, one)
         if done.proof.witness is None:
             return done, KNOWN_AXIS if _is_short(job, one) else AS_GOOD

@@ -75,6 +75,8 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     -----
     **Properties**: 1. never above the greatest depth of these rays; 2. a cut deeper and wider than a limit is never
     told to be below it; 3. a ray farther than `NEAR`, and `TIMES` the allowed depth, from every edge keeps its depth.
+
+    Beyond the middle of a wall a depth belongs to its other side, and is told there.
     """
     foot, normal, depth = rays
     reach = max(NEAR, TIMES * allowed)
@@ -105,14 +107,15 @@ def _follow_in_walls(rays: tuple[Array, Array], found: Array, cut: Callable[[Arr
     """Lower the depths of rays beside an edge that cross the middle of a wall, (k, steps): beyond it they belong to the
     wall's other side, and behind that to nothing of the part."""
     over = found > allowed
-    feet, directions, depth = rays[0][over], rays[1][over], found[over]
-    if not len(depth):
+    if not over.any():
         return
+    feet, directions, depth = rays[0][over], rays[1][over], found[over]
     middle = np.maximum(walls(feet, directions), _LEAST)
     thin = middle < depth
-    if thin.any():
-        depth[thin] = cut(feet[thin], directions[thin], middle[thin])
-        found[over] = depth
+    if not thin.any():
+        return
+    depth[thin] = cut(feet[thin], directions[thin], middle[thin])
+    found[over] = depth
 
 
 def _may_lie_within(reach: float, other: Face, foot: Array) -> NDArray[np.bool_]:

@@ -117,17 +117,18 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
     length = _lengths(v, speed_v)
+    mark = length / length[-1]
     rows = int(_parts(length, spacing))
-    across = _lengths_across(face, np.interp((np.arange(rows) + 0.5) / rows, length / length[-1], v), u)
+    middles = np.interp((np.arange(rows) + 0.5) / rows, mark, v)
+    lines = np.interp(np.arange(rows + 1) / rows, mark, v)
+    across = _lengths_across(face, middles, u)
     counts = _parts(across, spacing)
     before = np.cumsum(counts) - counts
-    low, high = _reach_of_rows(face, np.interp(np.arange(rows + 1) / rows, length / length[-1], v))
+    low, high = _reach_of_rows(face, lines)
     found, tried = [np.empty((0, 3))], [np.empty((0, 3))]
     for row in np.flatnonzero(low <= high):
-        count, mark = counts[row], across[row] / across[row, -1]
-        # A place lies in its cell but for rounding: one more is tried at either end.
-        first, last = np.floor(np.interp([low[row], high[row]], u, mark) * count)
-        column = np.arange(max(int(first) - 1, 0), min(int(last) + 1, count - 1) + 1)
+        count = counts[row]
+        column = _columns_within(low[row], high[row], (u, across[row]), count)
         k = before[row] + 1 + column
         at_u, step_u = _place_at_shares(u, across[row], (column + np.mod(0.5 + k * _R2[0], 1.0)) / count)
         at_v, step_v = _place_at_shares(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
@@ -137,6 +138,23 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
             tried = [np.empty((0, 3))]
     places = np.concatenate([*found, _places_on(face, tried)])
     return places[:, :2], places[:, 2]
+
+
+def _columns_within(low: float, high: float, line: tuple[Array, Array], count: int) -> NDArray[np.int64]:
+    """Numbers of a row's cells that come between two values of u.
+
+    Parameters
+    ----------
+    low, high : float
+    line : (k,) arrays
+        Values of u, and the lengths along the row up to them.
+    count : int
+        Cells of equal length in the row.
+    """
+    u, length = line
+    first, last = np.floor(np.interp([low, high], u, length / length[-1]) * count).astype(np.int64)
+    # A place lies in its cell but for rounding: one more is tried at either end.
+    return np.arange(max(first - 1, 0), min(last + 1, count - 1) + 1)
 
 
 def _places_on(face: Face, tried: list[Array]) -> Array:
@@ -165,8 +183,9 @@ def _reach_of_rows(face: Face, lines: Array) -> tuple[Array, Array]:
     low, high = np.full(len(lines) - 1, np.inf), np.full(len(lines) - 1, -np.inf)
     rounding = _ROUNDING * (lines[-1] - lines[0])
     for loop in face.outline:
-        ends = np.stack([loop, np.roll(loop, -1, axis=0)])
-        (left, bottom), (right, top) = ends.min(axis=0).T, ends.max(axis=0).T
+        following = np.roll(loop, -1, axis=0)
+        left, bottom = np.minimum(loop, following).T
+        right, top = np.maximum(loop, following).T
         first = np.clip(np.searchsorted(lines, bottom - rounding, side="right") - 1, 0, len(low) - 1)
         last = np.clip(np.searchsorted(lines, top + rounding, side="right") - 1, 0, len(low) - 1)
         crossed = last - first + 1

@@ -524,13 +524,13 @@ class PlanningJob:
 
     def _search_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """The axis that the method finds, and the very passes, links and ramps included, that were proven."""
-        job = self
         if self._strategy.moves:  # in a comparison with a plan for least time, or along planes
             objective = "length" if self.inputs.objective == "time" else self.inputs.objective
             job = replace(self, inputs=replace(self.inputs, objective=objective, passes=ISO))
             return self._strategy.plan(job._task(target.face, progress), self.inputs, target.axis)
-        others = () if target.shared else target.others
-        known = others if target.axis is None else (target.axis, *others)
+        known = [] if target.axis is None else [target.axis]
+        if not target.shared:  # the axes that others share were tried before
+            known += target.others
         return self._strategy.plan(self._task(target.face, progress), self.inputs, np.array(known) if known else None)
 
     @property

@@ -228,17 +228,18 @@ class RackPlanner:
                 self._rests.append(_rest_not_begun(one, left))
 
     def _axes_of(self, one: _Waiting) -> tuple[Array, ...]:
-        """Axes of earlier operations on the same sub-surface, those first that left what waits, and not too many; then
-        that of the choice of tools."""
-        order = sorted(range(len(self._done)), key=lambda place: place not in one.left_by)
+        """Axes of earlier operations on the same face, those first that left what waits, and not too many; then that of
+        the choice of tools."""
+        left_it = [self._done[place] for place in sorted(one.left_by)]
+        axes = [op.orientation.axis for op in (*left_it, *self._done) if op.face.number == one.root.number]
         found: list[Array] = []
-        for op in (self._done[place] for place in order):
-            axis = op.orientation.axis
-            if op.face.number != one.root.number or axis is None:
-                continue
-            if not any(np.array_equal(axis, other) for other in found):
+        for axis in axes:
+            if axis is not None and not any(np.array_equal(axis, other) for other in found):
                 found.append(axis)
-        return (*found[:_KNOWN], *(() if one.axis is None else (one.axis,)))
+        found = found[:_KNOWN]
+        if one.axis is not None:
+            found.append(one.axis)
+        return tuple(found)
 
     def _name(self, one: _Waiting) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
