@@ -13,6 +13,7 @@ from toolaxis.search import known_axes
 from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.fixed_axis import find_axis
 from toolaxis.search.messages import AS_GOOD, KNOWN_AXIS
+from toolaxis.work import Budget, limit_work
 
 TOOL, SCALLOP = Tool.torus(6, 1, stickout=40), 0.05
 LEANING = unit(np.array([0.1, 0.25, 1.0]))
@@ -54,6 +55,30 @@ def test_a_ball_end_that_reaches_all_needs_no_search_however_long_its_cut(proble
     assert AS_GOOD in found.reasons and found.length > 1.0
     searched, _ = find_axis(ball, starts=[LEANING])
     assert found.length == pytest.approx(searched.length, rel=0.02)
+
+
+def test_the_proof_of_a_known_axis_has_the_work_that_is_kept_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found when read again: a long cut of a ball end would have run out of work in the middle of its proof."""
+    begun: list[float] = []
+    real = known_axes.check_candidate
+
+    def note(*asked):
+        begun.append(budget.done)
+        return real(*asked)
+
+    def found_within(limit: float, more: float) -> str:
+        nonlocal budget
+        budget = Budget(limit, more=more)
+        fresh = task(seeded(3, height=0.1), Tool.ball(6, stickout=40), SCALLOP)  # nothing is known from before
+        with limit_work(budget):
+            return find_axis(with_index_moves(fresh, 1.0), starts=[LEANING])[0].outcome
+
+    budget = Budget(1e6)
+    monkeypatch.setattr(known_axes, "check_candidate", note)
+    assert found_within(1e6, 0.0) == "feasible"
+    limit = 1.02 * begun[0]  # it suffices to look at the axis, and not for its passes
+    assert found_within(limit, 0.0) == "not_found"
+    assert found_within(limit, 3.0) == "feasible"
 
 
 def test_an_axis_that_the_proof_refuses_is_not_taken(problem: FaceProblem, monkeypatch: pytest.MonkeyPatch) -> None:
