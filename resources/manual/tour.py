@@ -6,14 +6,14 @@ figures, and the program that FreeCAD's post-processor made to the screen.  Imag
 
 import importlib.util
 import os
+import pathlib  # FreeCAD runs commands in this very module, and they import a Path of their own
 import subprocess
 import sys
 import tempfile
 import traceback
 from contextlib import suppress
-from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
+HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 #: Width of the pictures, pixels, and their number of colours, so that they stay small.
 WIDTH, COLOURS = 1200, 96
@@ -35,7 +35,7 @@ class Tour:
     """
 
     def __init__(self, desk, folder, written):
-        self.desk, self.folder, self.written = desk, Path(folder), Path(written)
+        self.desk, self.folder, self.written = desk, pathlib.Path(folder), pathlib.Path(written)
         self.document = self.face = None
 
     def picture(self, name):
@@ -43,7 +43,7 @@ class Tour:
         self.folder.mkdir(parents=True, exist_ok=True)
         target = self.folder / f"freecad-{name}.png"
         with tempfile.TemporaryDirectory() as folder:
-            source = Path(folder) / "screen.png"
+            source = pathlib.Path(folder) / "screen.png"
             self.desk.capture(source)
             subprocess.run(["convert", str(source), "-resize", str(WIDTH), "+dither", "-colors", str(COLOURS),
                             "-define", "png:compression-level=9", str(target)], check=True, stdin=subprocess.DEVNULL)
@@ -244,12 +244,12 @@ if __name__ == "__main__":
     module = desk_module()
     module.set_theme("FreeCAD Light")
     FreeCAD.ParamGet("User parameter:BaseApp/Preferences/NaviCube").SetInt("CornerNaviCube", 2)  # not over the panel
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "figures"
+    target = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "figures"
     status = 1
     try:
         desk = module.Desk("light")
         with tempfile.TemporaryDirectory() as folder:
-            sys.__stdout__.write(Tour(desk, target, Path(folder) / "freeform-plan").walk())
+            sys.__stdout__.write(Tour(desk, target, pathlib.Path(folder) / "freeform-plan").walk())
         desk.tidy()
         assert not desk.errors, desk.errors
         status = 0
