@@ -4,6 +4,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning import pipeline
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.job.planning.rack import _merge, _Screen, _Waiting
+from toolaxis.job.planning.rack import RackPlanner, _merge, _Screen, _Waiting
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -29,6 +30,7 @@ from toolaxis.progress import Progress
 from toolaxis.regions.tool_choice import ToolChain
 from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.report.warnings import warnings_of
+from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 
@@ -382,3 +384,28 @@ def test_the_largest_of_what_waits_for_a_tool_comes_first(monkeypatch: pytest.Mo
     ta.plan(walled(), ["ball:8", "ball:3"], 0.1, faces="all", workers=1)
     assert any(len(row) > 1 for row in seen)
     assert all(row == sorted(row, reverse=True) for row in seen)
+
+
+def test_what_is_in_reach_of_some_tool_is_told_of_a_face() -> None:
+    """Beside a wall the small ball comes nearer to it than the large one; from below none sees the sheet."""
+    part = walled()
+    plan = ta.plan(part, TOOLS[1], SCALLOP, faces=[1], limits=UP, workers=1)
+    job = PlanningJob(part, TOOLS[1], plan.inputs, None, (), np.zeros(3))
+    face = part.face(1)
+    large, both = (_Screen([replace(job, tool=tool) for tool in some], [face]).reachable(face)
+                   for some in (TOOLS[:1], TOOLS))
+    assert 0.75 * face.area < large < both <= face.area * (1 + 1e-9)
+    below = replace(job, limits=intersect_limits(None, "cone:0,0,-1,20"))
+    assert _Screen([below], [face]).reachable(face) == 0.0
+
+
+def test_faces_of_a_skin_are_planned_one_by_one_only_where_more_of_it_is_in_reach(
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: skins of which tools reach little were planned anew face by face, for minutes and next to nothing."""
+    machined, reachable = {1: 20.0, 2: 20.0, 3: 0.0}, {1: 25.0, 2: 60.0, 3: 0.0}
+    skins = [SimpleNamespace(number=k, area=100.0) for k in machined]
+    monkeypatch.setattr(rack_planning, "area_machined", lambda operations: machined[operations[0]])
+    planner = RackPlanner([SimpleNamespace(workers=1)])  # type: ignore[list-item]
+    planner._screen = SimpleNamespace(reachable=lambda skin: reachable[skin.number])  # type: ignore[assignment]
+    found = planner._with_more_in_reach(skins, {k: [k] for k in machined}, Progress())  # type: ignore[arg-type, dict-item]
+    assert [skin.number for skin in found] == [2]

@@ -40,6 +40,8 @@ APART, _CELLS = np.radians(20), 200
 WHOLE, MUCH = 0.8, 0.3
 #: Share of a skin's area below which what is machined of it makes its faces be planned one by one.
 APART_BELOW = 0.5
+#: Share of a skin that tools have to reach beyond what is machined of it for its faces to be planned one by one.
+_MORE = 0.1
 #: Share of a face that is out of reach where no tool is asked for it.
 PROVEN = 0.99
 #: Axes of earlier operations that are tried at once for what these left, at most.
@@ -285,6 +287,7 @@ class RackPlanner:
                if skin.members}
         lost = [skin for skin in faces if skin.number in own and not any(op.failed for op in own[skin.number])
                 and area_machined(own[skin.number]) < APART_BELOW * skin.area]
+        lost = self._with_more_in_reach(lost, own, progress)
         if not lost:
             return
         apart = take_apart(part, [skin.number for skin in lost])
@@ -299,6 +302,15 @@ class RackPlanner:
                 part = take_apart(part, [skin.number]).with_warnings(compare_areas(skin, own[skin.number], rows))
                 self._exchange(skin, other, rows)
         self.jobs = [replace(job, part=part) for job in self.jobs]
+
+    def _with_more_in_reach(self, skins: Sequence[Face], own: Mapping[int, Sequence[Operation]],
+                            progress: Progress) -> list[Face]:
+        """Those of some skins of which tools reach more than was machined: of the others faces hold no more either."""
+        found = abreast(lambda k, _: self._screen.reachable(skins[k]), len(skins), self.jobs[0].workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        return [skin for k, skin in enumerate(skins)
+                if found.results.get(k, skin.area) - area_machined(own[skin.number]) > _MORE * skin.area]
 
     def _exchange(self, skin: Face, other: "RackPlanner", rows: Sequence[Operation]) -> None:
         """Put operations of another planner, on the faces of a skin, in the place of those of the skin."""
@@ -417,6 +429,23 @@ class _Screen:
         face : Face
         begin : int
         """
+        prices, facing = self._prices(face, begin)
+        found = chains_of(prices, INDEX_SECONDS)
+        return tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
+                     if one.tools else one for one in found)
+
+    def reachable(self, face: Face) -> float:
+        """Area of a face that some tool reaches under some axis, mm^2.
+
+        Parameters
+        ----------
+        face : Face
+        """
+        prices, _ = self._prices(face, 0)
+        return float(prices.area @ np.isfinite(prices.seconds).any(axis=(0, 1)))
+
+    def _prices(self, face: Face, begin: int) -> tuple[FacePrices, NDArray[np.intp]]:
+        """What it takes tools, from one on, to machine cells of a face, and the numbers of the axes that see any."""
         jobs = self._jobs[begin:]
         inputs = jobs[0].inputs
         tools = [job.tool for job in jobs]
@@ -424,16 +453,14 @@ class _Screen:
         facing = np.flatnonzero((cells.normal @ self._axes.T > 0).any(axis=0))
         axes = self._axes[facing]
         if not len(axes) or not len(cells):
-            return (ToolChain((), 0.0, 0.0),)
+            return FacePrices(np.full((len(jobs), len(axes), len(cells)), np.inf), cells.area), facing
         scene = replace(self._scene, allowance=inputs.allowance_of(face))
         reached = screen_reach(cells, tools, axes, scene)
         wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
         held = reached & (wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
-        found = chains_of(FacePrices(seconds, cells.area), INDEX_SECONDS)
-        return tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
-                     if one.tools else one for one in found)
+        return FacePrices(seconds, cells.area), facing
 
     def first_axis(self, chain: ToolChain) -> Array | None:
         """The axis of the first tool of a chain, (3,); None without a tool.
