@@ -1,11 +1,29 @@
-"""The libraries are loaded from when the workbench is chosen, beside the window."""
+"""The libraries are loaded from when the workbench is chosen, between the events of the window."""
 
 import sys
+import threading
 
 
 def test_the_libraries_are_loaded_before_a_panel_is_opened(desk):
-    desk.wait(lambda: "toolaxis.job.planning.pipeline" in sys.modules, "the libraries are loaded", 60.0)
     from freecad.toolaxis.services import background
 
-    desk.wait(lambda: not background._running, "the thread has ended", 60.0)
+    desk.wait(lambda: background._load.cache_info().currsize, "the libraries are loaded", 60.0)
+    assert "toolaxis.job.planning.pipeline" in sys.modules
     assert not background.load_ahead(), "once is enough"
+
+
+def test_no_other_thread_imports_what_the_window_may_import_too(desk, monkeypatch):
+    # two threads that import one package at a time make Python's import locks fail as deadlocked
+    from freecad.toolaxis.services import background
+
+    threads = []
+
+    def note(library):
+        threads.append(threading.current_thread())
+
+    monkeypatch.setattr(background, "import_module", note)
+    background._load.cache_clear()
+    work = background.BackgroundWork(lambda _: True).start()
+    desk.wait(lambda: not work.running, "the work is done", 60.0)
+    assert len(threads) == len(background._LIBRARIES)
+    assert set(threads) == {threading.main_thread()}

@@ -7,6 +7,9 @@ A full collection over all objects of FreeCAD and of the libraries holds the int
 more than 0.1 s.  So Python's collector leaves alone what was there before while something is computed, and for good
 what was there when the libraries were loaded and no panel was open.  The interpreter also changes hands more often
 while something is computed, since the window asks for it several times in drawing one picture.
+
+The libraries are loaded on the GUI thread, one after the other with the event loop between them.  Python's import locks
+take it for a deadlock where two threads import one package, and either of them then fails.
 """
 
 import gc
@@ -16,6 +19,7 @@ import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from threading import Event
 from time import monotonic
 from typing import Any
@@ -34,14 +38,17 @@ _PATIENCE = 3000
 #: How long a computation keeps the interpreter from the window that waits for it, and what it is without one, s.
 _TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
 
+#: What computations need, in steps of less than half a second each, and the pause between two steps, ms.
+_LIBRARIES = ("numpy", "scipy.special", "scipy.spatial", "scipy.stats", "numba", "matplotlib.figure",
+              "toolaxis.search.fixed_axis", "toolaxis.job.planning.pipeline", "toolaxis.job.planning.edit_axis")
+_PAUSE = 30
+
 #: Who hears of errors inside the add-on: callables that take the sentence and where it came from.
 _hearers: list[Callable[[str, str], Any]] = []
 #: Panels and windows of pictures as long as anything holds them.
 _windows: list[ref] = []
 #: Set when what was there before the first panel after the libraries were loaded is left alone for good.
 _settled = Event()
-#: The work that loads the libraries before anything is asked for, once it has begun.
-_ahead: list["BackgroundWork"] = []
 #: Threads that have not ended, whoever started them: a QThread must not be destroyed before its end.
 _running: set["_Thread"] = set()
 
@@ -100,10 +107,8 @@ def _load() -> None:
     collecting = gc.isenabled()
     gc.disable()
     try:
-        import scipy.spatial  # noqa: F401
-
-        import toolaxis.job.planning.edit_axis
-        import toolaxis.job.planning.pipeline  # noqa: F401
+        for library in _LIBRARIES:
+            import_module(library)
     finally:
         if collecting:
             gc.enable()
@@ -238,7 +243,9 @@ class BackgroundWork(QtCore.QObject):
         self.running = False
 
     def start(self) -> "BackgroundWork":
-        """Begin; returns at once."""
+        """Begin; returns at once where the libraries are loaded."""
+        with suppress(ImportError):  # the thread tells it
+            _load()
         _running.add(self._thread)
         self._thread.finished.connect(_keeper().sweep)
         self.running = True
@@ -286,11 +293,40 @@ class BackgroundWork(QtCore.QObject):
 
 
 def load_ahead() -> bool:
-    """Load the libraries that computations need in a thread, once; whether that has begun now."""
-    if _ahead or _load.cache_info().currsize:
+    """Load the libraries that computations need, once, between the events of the window; whether that begins now."""
+    if _load.cache_info().currsize or _loader.cache_info().currsize:
         return False
-    _ahead.append(BackgroundWork(lambda _: True).start())
+    _loader().start()
     return True
+
+
+class _Loader(QtCore.QObject):
+    """Loads one library at a time from a timer."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._left = list(_LIBRARIES)
+        self._timer = QtCore.QTimer(self)
+        self._timer.setInterval(_PAUSE)
+        self._timer.timeout.connect(self._load_next)
+
+    def start(self) -> None:
+        """Begin with the next turn of the event loop."""
+        self._timer.start()
+
+    def _load_next(self) -> None:
+        if not self._left or _load.cache_info().currsize:
+            self._timer.stop()
+            return
+        with suppress(ImportError):  # told when something is computed
+            import_module(self._left.pop(0))
+            if not self._left:
+                _load()
+
+
+@cache
+def _loader() -> _Loader:
+    return _Loader()
 
 
 class _Keeper(QtCore.QObject):
