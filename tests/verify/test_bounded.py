@@ -17,7 +17,6 @@ from toolaxis.verify import convex_edges as edges
 from toolaxis.verify import linear_motions as motions
 from toolaxis.verify import material_removal as removal
 from toolaxis.verify import rays, verdict
-from toolaxis.verify import thin_walls as walls
 from toolaxis.verify.component_clearance import clearance
 from toolaxis.verify.kept import SizedCache
 from toolaxis.verify.material_removal import Removal
@@ -140,7 +139,6 @@ def test_rays_looked_at_together_change_no_verdict(monkeypatch):
     whole = verdict.judge(case, spacing=0.3)
     assert whole.gouge_max > 0.01
     monkeypatch.setattr(edges, "_AT_ONCE", 50)
-    monkeypatch.setattr(walls, "_AT_ONCE", 50)
     monkeypatch.setattr(removal, "TILE", 3)
     tiled = verdict.judge(case, spacing=0.3)
     assert tiled.reasons == whole.reasons

@@ -130,3 +130,27 @@ def test_what_lies_beyond_a_wall_is_no_depth_beside_a_blunt_edge(deep):
     found = cut_along_the_edge([[8, 2, deep - 0.4], [8, 4, deep - 0.4]], [0, 0, -1], touching=(), skin=(bent, lower))
     assert found.gouge_max == pytest.approx(max(deep, 0.0), abs=1e-3)
     assert found.passed == (deep < 0), found.reasons
+
+
+def rib(width, lean):
+    """Cross-section in x and z: a side that stands upright, a flat tip, and a side that leans outwards (deg)."""
+    foot = 2.0 * np.tan(np.radians(lean))
+    return (plane([0, 0, -2], [0, 0, 2], [0, 2, 0], "upright"), plane([0, 0, 0], [width, 0, 0], [0, 2, 0], "tip"),
+            plane([width, 0, 0], [foot, 0, -2], [0, 2, 0], "leaning"))
+
+
+@pytest.mark.parametrize("width", [0.3, 0.6])
+@pytest.mark.parametrize("below", [0.0, 0.05])
+def test_air_behind_a_rib_that_grows_wider_is_no_gouge(width, below):
+    """Rays from the upright side near the tip come nearer to the border of the leaning side than to any place inside
+    it, leave the rib through it and meet the cutter in the air behind."""
+    upright, tip, leaning = rib(width, 40.0)
+    out = leaning.normal(np.array([[0.5, 0.5]]))[0]
+    ball = Profile(0.0, 0.4, 0.0, 20.0)
+    beside = np.array([width + 0.2 * np.tan(np.radians(40.0)), 1.0, -0.2]) + (0.03 - below) * out
+    tips = beside + np.array([[0.0, -0.5, 0.0], [0.0, 0.5, 0.0]])
+    found = judge(VerificationTask("rib", tips, np.tile(out, (2, 1)), np.full(2, Motion.CUT, dtype=np.int8), ball,
+                                   (leaning,), 0.02, left=(leaning,), skin=(leaning, tip, upright),
+                                   tolerance=Tolerance(gouge=0.002)), spacing=0.2)
+    assert found.gouge_max == pytest.approx(max(below - 0.03, 0.0), abs=0.001)
+    assert {place.face for place in found.worst_gouge} == ({"leaning"} if below else set())

@@ -47,7 +47,7 @@ class End(NamedTuple):
 
 def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[tuple[Face, ...], tuple[Face, ...]],
                    cut: Callable[[Array, Array, Array], Array], allowed: float,
-                   walls: Callable[[Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
+                   others: Callable[[Array, Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
     """How deep the cut lies below the part's surface, for rays of a face; the rays' own depth far from edges.
 
     Parameters
@@ -63,8 +63,8 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
         Depths laid bare, mm, of rays with given feet and normals that are followed to given depths.
     allowed : float
         Depth that a gouge may have, mm.
-    walls : callable
-        How far rays with given feet and normals may be followed to the middle of a wall, mm.
+    others : callable
+        How far rays with given feet, normals and depths may be followed until another place of the part is nearer, mm.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     **Properties**: 1. never above the greatest depth of these rays; 2. a cut deeper and wider than a limit is never
     told to be below it; 3. a ray farther than `NEAR`, and `TIMES` the allowed depth, from every edge keeps its depth.
 
-    Beyond the middle of a wall a depth belongs to its other side, and is told there.
+    Where another place of the part is nearer than a ray's foot, a depth belongs to that place, and is told there.
     """
     foot, normal, depth = rays
     reach = max(NEAR, TIMES * allowed)
@@ -97,24 +97,23 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
             asked = np.maximum(middle, _LEAST)
             found = cut(feet.reshape(-1, 3), directions.reshape(-1, 3), asked.reshape(-1)).reshape(asked.shape)
             found = np.where(middle > 0.0, np.minimum(found, middle), 0.0)
-            _follow_in_walls((feet, directions), found, cut, allowed, walls)
+            _follow_to_other_places((feet, directions), found, cut, allowed, others)
             told[rows] = found.max(axis=1)
     return told, near
 
 
-def _follow_in_walls(rays: tuple[Array, Array], found: Array, cut: Callable[[Array, Array, Array], Array],
-                     allowed: float, walls: Callable[[Array, Array], Array]) -> None:
-    """Lower the depths of rays beside an edge that cross the middle of a wall, (k, steps): beyond it they belong to the
-    wall's other side, and behind that to nothing of the part."""
+def _follow_to_other_places(rays: tuple[Array, Array], found: Array, cut: Callable[[Array, Array, Array], Array],
+                            allowed: float, others: Callable[[Array, Array, Array], Array]) -> None:
+    """Lower the depths of rays beside an edge, (k, steps), that come nearer to another place of the part."""
     over = found > allowed
     if not over.any():
         return
     feet, directions, depth = rays[0][over], rays[1][over], found[over]
-    middle = np.maximum(walls(feet, directions), _LEAST)
-    thin = middle < depth
-    if not thin.any():
+    end = np.maximum(others(feet, directions, depth), _LEAST)
+    short = end < depth
+    if not short.any():
         return
-    depth[thin] = cut(feet[thin], directions[thin], middle[thin])
+    depth[short] = cut(feet[short], directions[short], end[short])
     found[over] = depth
 
 

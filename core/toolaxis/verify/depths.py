@@ -15,7 +15,7 @@ from toolaxis.verify.convex_edges import depth_at_edges
 from toolaxis.verify.material_removal import RestMaterial
 from toolaxis.verify.seams import SeamSteps, depth_taken_off, steps_of
 from toolaxis.verify.task import VerificationTask
-from toolaxis.verify.thin_walls import wall_depth
+from toolaxis.verify.thin_walls import depth_to_other_places
 
 Array = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class Depths:
         point, normal = rays[0][deep], rays[1][deep]
         own = tuple(one for one in self._of_the_part() if one is not face)
         told, near = depth_at_edges(face, (point, normal, left.gouge[deep]), (own, task.surroundings), self._laid_bare,
-                                    task.tolerance.gouge, self._walls)
+                                    task.tolerance.gouge, self._to_other_places)
         self._in_walls((point, normal), left, deep, ~near)
         left.gouge[deep[near]] = told[near]
         higher = left.gouge[deep] > task.tolerance.gouge
@@ -68,16 +68,19 @@ class Depths:
     def _laid_bare(self, feet: Array, ways: Array, depth: Array) -> Array:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
-    def _walls(self, feet: Array, ways: Array) -> Array:
-        """How far rays may be followed to the middle of a wall, mm."""
-        return wall_depth(feet + self.task.allowance * ways, ways, self._of_the_part(), self.task.depth)
+    def _to_other_places(self, feet: Array, ways: Array, depth: Array) -> Array:
+        """How far below the allowance rays may be followed, of given depths, until another place is nearer, mm."""
+        allowance = self.task.allowance
+        below = depth_to_other_places(feet, ways, self._of_the_part(), np.maximum(depth - allowance, 0.0))
+        return np.where(below < depth - allowance, allowance + below, depth)
 
     def _in_walls(self, rays: tuple[Array, Array], left: RestMaterial, deep: NDArray[np.int64],
                   asked: NDArray[np.bool_]) -> None:
         """Follow rays in thin walls to their middle only: each half belongs to its own side."""
         foot, normal = rays[0][asked] + self.task.allowance * rays[1][asked], rays[1][asked]
-        limit = self._walls(rays[0][asked], normal)
-        thin = limit < self.task.depth
+        depth = left.gouge[deep[asked]]
+        limit = self._to_other_places(rays[0][asked], normal, depth)
+        thin = limit < depth
         if thin.any():
             rows = deep[asked][thin]
             less = self.cut((foot[thin], normal[thin]), depth=np.maximum(limit[thin], _LEAST))
