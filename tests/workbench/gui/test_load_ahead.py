@@ -25,5 +25,22 @@ def test_no_other_thread_imports_what_the_window_may_import_too(desk, monkeypatc
     background._load.cache_clear()
     work = background.BackgroundWork(lambda _: True).start()
     desk.wait(lambda: not work.running, "the work is done", 60.0)
-    assert len(threads) == len(background._LIBRARIES)
+    assert len(threads) == len([*background._LIBRARIES, background._PICTURES])
     assert set(threads) == {threading.main_thread()}
+
+
+def test_a_computation_goes_on_without_what_only_pictures_need(desk, monkeypatch):
+    from freecad.toolaxis.services import background
+
+    def load(library):
+        if library == background._PICTURES:
+            raise ImportError(library)
+
+    monkeypatch.setattr(background, "import_module", load)
+    background._load.cache_clear()
+    outcome = []
+    work = background.BackgroundWork(lambda _: True)
+    work.done.connect(outcome.append)
+    work.start()
+    desk.wait(lambda: outcome, "the work is done", 60.0)
+    assert outcome == [True]

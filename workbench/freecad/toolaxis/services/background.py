@@ -39,9 +39,11 @@ _PATIENCE = 3000
 _TURN, _USUAL_TURN = 0.001, sys.getswitchinterval()
 
 #: What computations need, in steps of less than half a second each, and the pause between two steps, ms.
-_LIBRARIES = ("numpy", "scipy.special", "scipy.spatial", "scipy.stats", "numba", "matplotlib.figure",
-              "toolaxis.search.fixed_axis", "toolaxis.job.planning.pipeline", "toolaxis.job.planning.edit_axis")
+_LIBRARIES = ("numpy", "scipy.special", "scipy.spatial", "scipy.stats", "numba", "toolaxis.search.fixed_axis",
+              "toolaxis.job.planning.pipeline", "toolaxis.job.planning.edit_axis")
 _PAUSE = 30
+#: What only pictures need: without it everything else goes on.
+_PICTURES = "matplotlib.figure"
 
 #: Who hears of errors inside the add-on: callables that take the sentence and where it came from.
 _hearers: list[Callable[[str, str], Any]] = []
@@ -109,6 +111,8 @@ def _load() -> None:
     try:
         for library in _LIBRARIES:
             import_module(library)
+        with suppress(ImportError):
+            import_module(_PICTURES)
     finally:
         if collecting:
             gc.enable()
@@ -305,7 +309,7 @@ class _Loader(QtCore.QObject):
 
     def __init__(self) -> None:
         super().__init__()
-        self._left = list(_LIBRARIES)
+        self._left = [*_LIBRARIES, _PICTURES]
         self._timer = QtCore.QTimer(self)
         self._timer.setInterval(_PAUSE)
         self._timer.timeout.connect(self._load_next)
@@ -315,12 +319,11 @@ class _Loader(QtCore.QObject):
         self._timer.start()
 
     def _load_next(self) -> None:
-        if not self._left or _load.cache_info().currsize:
-            self._timer.stop()
-            return
         with suppress(ImportError):  # told when something is computed
-            import_module(self._left.pop(0))
-            if not self._left:
+            if self._left and not _load.cache_info().currsize:
+                import_module(self._left.pop(0))
+            else:
+                self._timer.stop()
                 _load()
 
 
