@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -168,15 +169,23 @@ def face_splats(face: Face, seen: Camera) -> tuple[Array, Array]:
     -------
     points, normals : (n, 3) array
     """
-    u0, u1, v0, v1 = face.bounds
-    coarse = face.grid(24, 24)
-    d = face.evaluate(coarse if len(coarse) else [((u0 + u1) / 2, (v0 + v1) / 2)])
-    counts = []
-    for rate, span in ((d.su, u1 - u0), (d.sv, v1 - v0)):
-        length = float(np.linalg.norm(rate, axis=1).max()) * span
-        counts.append(int(np.clip(np.ceil(1.3 * length / seen.pixel), 8, _MOST)))
-    dense = face.evaluate(face.grid(counts[0], counts[1]))
+    along, across = (int(np.clip(np.ceil(1.3 * length / seen.pixel), 8, _MOST)) for length in _lengths(face))
+    dense = face.evaluate(face.grid(along, across))
     return dense.point, normals(dense, face.flip)
+
+
+_LENGTHS: WeakKeyDictionary[Face, tuple[float, float]] = WeakKeyDictionary()
+
+
+def _lengths(face: Face) -> tuple[float, float]:
+    """Greatest lengths of a face along u and along v, mm: the same in every picture."""
+    if face not in _LENGTHS:
+        u0, u1, v0, v1 = face.bounds
+        coarse = face.grid(24, 24)
+        d = face.evaluate(coarse if len(coarse) else [((u0 + u1) / 2, (v0 + v1) / 2)])
+        longest = [float(np.linalg.norm(rate, axis=1).max()) for rate in (d.su, d.sv)]
+        _LENGTHS[face] = longest[0] * (u1 - u0), longest[1] * (v1 - v0)
+    return _LENGTHS[face]
 
 
 def splats_of_revolution(outline: Array, tip: Array, axis: Array, pixel: float) -> tuple[Array, Array]:
