@@ -69,14 +69,14 @@ class Depths:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
     def _to_other_places(self, feet: Array, ways: Array, depth: Array) -> Array:
-        """How far below the allowance rays may be followed, of given depths, until another place is nearer, mm."""
+        """Depths of rays below the allowance, no deeper than to where another place of the part is nearer, mm."""
         allowance = self.task.allowance
         below = depth_to_other_places(feet, ways, self._of_the_part(), np.maximum(depth - allowance, 0.0))
         return np.where(below < depth - allowance, allowance + below, depth)
 
     def _in_walls(self, rays: tuple[Array, Array], left: RestMaterial, deep: NDArray[np.int64],
                   asked: NDArray[np.bool_]) -> None:
-        """Follow rays in thin walls to their middle only: each half belongs to its own side."""
+        """Follow rays in thin walls only until the other side is nearer: each half belongs to its own side."""
         foot, normal = rays[0][asked] + self.task.allowance * rays[1][asked], rays[1][asked]
         depth = left.gouge[deep[asked]]
         limit = self._to_other_places(rays[0][asked], normal, depth)

@@ -16,8 +16,9 @@ _NEARER, _ROUNDING = 0.02, 1e-6
 
 
 def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], depth: Array) -> Array:
-    """How far rays may be followed inwards until another place of the part is nearer than their foot: what is cut
-    beyond lies below that place, and is told there; behind a wall it is no part at all.
+    """How far rays may be followed inwards until another place of the part is nearer than their foot.
+
+    What is cut beyond that depth lies below the other place, and is told there; behind a wall there is only air.
 
     Parameters
     ----------
@@ -30,7 +31,7 @@ def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], d
 
     Returns
     -------
-    (m,) array, mm; never less than that
+    (m,) array, mm; never less than the depth where another place begins to be nearer, which counts from 2 % on
 
     Notes
     -----

@@ -16,17 +16,17 @@ def test_no_other_thread_imports_what_the_window_may_import_too(desk, monkeypatc
     # two threads that import one package at a time make Python's import locks fail as deadlocked
     from freecad.toolaxis.services import background
 
-    threads = []
+    loaded = []
 
     def note(library):
-        threads.append(threading.current_thread())
+        loaded.append((library, threading.current_thread()))
 
     monkeypatch.setattr(background, "import_module", note)
     background._load.cache_clear()
     work = background.BackgroundWork(lambda _: True).start()
     desk.wait(lambda: not work.running, "the work is done", 60.0)
-    assert len(threads) == len([*background._LIBRARIES, background._PICTURES])
-    assert set(threads) == {threading.main_thread()}
+    window = threading.main_thread()
+    assert loaded == [(library, window) for library in (*background._LIBRARIES, background._PICTURES)]
 
 
 def test_a_computation_goes_on_without_what_only_pictures_need(desk, monkeypatch):

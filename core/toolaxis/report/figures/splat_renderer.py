@@ -169,22 +169,23 @@ def face_splats(face: Face, seen: Camera) -> tuple[Array, Array]:
     -------
     points, normals : (n, 3) array
     """
-    along, across = (int(np.clip(np.ceil(1.3 * length / seen.pixel), 8, _MOST)) for length in _lengths(face))
+    counts = np.ceil(1.3 * _lengths(face) / seen.pixel)
+    along, across = np.clip(counts, 8, _MOST).astype(int)
     dense = face.evaluate(face.grid(along, across))
     return dense.point, normals(dense, face.flip)
 
 
-_LENGTHS: WeakKeyDictionary[Face, tuple[float, float]] = WeakKeyDictionary()
+_LENGTHS: WeakKeyDictionary[Face, Array] = WeakKeyDictionary()
 
 
-def _lengths(face: Face) -> tuple[float, float]:
-    """Greatest lengths of a face along u and along v, mm: the same in every picture."""
+def _lengths(face: Face) -> Array:
+    """Greatest lengths of a face along u and along v, (2,) mm: the same in every picture, so measured once."""
     if face not in _LENGTHS:
         u0, u1, v0, v1 = face.bounds
         coarse = face.grid(24, 24)
         d = face.evaluate(coarse if len(coarse) else [((u0 + u1) / 2, (v0 + v1) / 2)])
-        longest = [float(np.linalg.norm(rate, axis=1).max()) for rate in (d.su, d.sv)]
-        _LENGTHS[face] = longest[0] * (u1 - u0), longest[1] * (v1 - v0)
+        rates = np.linalg.norm([d.su, d.sv], axis=2).max(axis=1)
+        _LENGTHS[face] = rates * np.array([u1 - u0, v1 - v0])
     return _LENGTHS[face]
 
 

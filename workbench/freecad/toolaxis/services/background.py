@@ -8,8 +8,8 @@ more than 0.1 s.  So Python's collector leaves alone what was there before while
 what was there when the libraries were loaded and no panel was open.  The interpreter also changes hands more often
 while something is computed, since the window asks for it several times in drawing one picture.
 
-The libraries are loaded on the GUI thread, one after the other with the event loop between them.  Python's import locks
-take it for a deadlock where two threads import one package, and either of them then fails.
+The libraries are loaded on the GUI thread, one after the other with the event loop between them.  Where two threads
+import one package at a time, Python may take it for a deadlock, and one of the imports fails.
 """
 
 import gc
