@@ -36,6 +36,8 @@ _MOST, _AWAY, _SECOND = 1.5, 4.0, 2.5
 _EVEN = 0.9
 #: Steps of the search for a place beside, and places on the way at which it is looked whether the surface is flat.
 _STEPS, _ON_THE_WAY = 60, 17
+#: Greatest distance, mm, of control points that are one point, a pole.
+_ONE_POINT = 1e-9
 #: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
 _PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
 #: How many times finer cells are tried where some of those may turn over.
@@ -93,7 +95,8 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     -----
     Su of a piece lies in the cone of the legs of its control net along u, Sv in that of the legs along v.  Where the
     two cones share no line, Su and Sv are nowhere parallel.  Where that is so of all cells, however small, none is
-    turned over.  Otherwise a cell shorter than a fold may lie within one.
+    turned over.  Otherwise a cell shorter than a fold may lie within one.  At a pole, where a whole side of a piece is
+    one point, the derivative along that side is the distance from it times a factor: the cone is that of the factor.
     """
     found = _NetCells.of(data, 1)
     for finer in _FINER:
@@ -150,7 +153,37 @@ def _turning(nets: Array) -> Bools:
         axes.append(axis)
         widths.append(width)
     apart = np.arccos(np.clip(np.abs(dot(*axes)), 0.0, 1.0))
-    return np.asarray(sum(widths) >= apart)
+    turning = np.asarray(sum(widths) >= apart)
+    for along in (2, 3):
+        for end in (0, -1):
+            side = points.take([end], axis=along)
+            pole = turning & (np.ptp(side, axis=(2, 3)) < _ONE_POINT).all(axis=-1)
+            if pole.any():
+                at_the_pole = nets[pole] if end == -1 else np.flip(nets[pole], along - 1)
+                turning[pole] = _turning_beside_pole(at_the_pole if along == 3 else at_the_pole.swapaxes(1, 2))
+    return turning
+
+
+def _turning_beside_pole(nets: Array) -> Bools:
+    """Which homogeneous Bezier nets (n, pu + 1, pv + 1, 4) that end along v in one point do not prove that Su x Sv
+    keeps its side.
+
+    The places S - pole, and with them Su, are (1 - v) times another net.
+    """
+    weight = nets[..., 3:]
+    moments = weight * (nets[..., :3] / weight - nets[:, :1, -1:, :3] / weight[:, :1, -1:])
+    degree = moments.shape[2] - 1
+    factor = moments[:, :, :-1] * (degree / (degree - np.arange(degree)))[:, None]
+    radius = np.linalg.norm(factor, axis=-1).max(axis=(1, 2)) / weight.min(axis=(1, 2, 3))
+    # w Su is the derivative of w (S - pole), less (S - pole) times that of w; both have the factor 1 - v.
+    slack = radius[:, None, None] * np.abs(np.diff(weight[..., 0], axis=1)).max(axis=2, keepdims=True)
+    legs = np.diff(factor, axis=1)
+    around = _cone(legs[None], np.broadcast_to(slack, legs.shape[:-1])[None])
+    distance = np.linalg.norm(moments / weight, axis=-1).max(axis=(1, 2))
+    slack = distance[:, None, None] * np.abs(np.diff(weight[..., 0], axis=2))
+    towards = _cone(np.diff(moments, axis=2)[None], slack[None])
+    apart = np.arccos(np.clip(np.abs(dot(around[0], towards[0])), 0.0, 1.0))
+    return np.asarray(around[1] + towards[1] >= apart)[0]
 
 
 def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
