@@ -5,6 +5,7 @@ between passes lay between the places at which it was looked for.
 """
 
 import numpy as np
+import pytest
 
 import toolaxis as ta
 from toolaxis.cad.load import load
@@ -14,6 +15,7 @@ from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess
 SCALLOP = 0.005
 
 
+@pytest.mark.long
 def test_next_to_nothing_stays_between_passes(shared_parts):
     part = load(shared_parts / "ftc07_in.stp")
     tool = next(tool for tool in load_library(None).tools if tool.shop_name.startswith("Tapered ball D6"))

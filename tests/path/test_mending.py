@@ -1,6 +1,6 @@
 """Further short passes over what is left where none may run out beyond the border of a face."""
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -27,17 +27,22 @@ OUTLINES = {
     "round": 0.5 + 0.42 * ROUND,
     "uneven": 0.5 + (0.3 + 0.14 * np.cos(5 * T))[:, None] * ROUND,
 }
+#: Every outline with both cutters and all ways of laying passes; half of all triples takes minutes and is for --long.
+CASES = [pytest.param(outline, number, *way, marks=[pytest.mark.long] * ((i + number + k) % 2))
+         for i, outline in enumerate(OUTLINES) for number in (0, 1) for k, way in enumerate(LAID)]
 
 
+@cache
 def sheet(outline: str) -> ta.Face:
     x, y = np.meshgrid(np.linspace(0, 16, 5), np.linspace(0, 14, 5), indexing="ij")
     height = 0.4 * np.sin(x / 6) * np.cos(y / 7)
     return ta.Face.from_bspline(np.stack([x, y, height], axis=-1), trims=(OUTLINES[outline],))
 
 
-def laid(face: ta.Face, number: int, feed: str, passes: str = ISO) -> FurtherPasses:
+@cache
+def laid(outline: str, number: int, feed: str, passes: str = ISO) -> FurtherPasses:
     """Passes that stay on the face, and what they leave."""
-    tool, cut = CUTTERS[number], Cut(CUTTERS[number], AXES[number], SCALLOP)
+    face, tool, cut = sheet(outline), CUTTERS[number], Cut(CUTTERS[number], AXES[number], SCALLOP)
     pattern, = patterns_of(Estimator.of(face, tool, SCALLOP), passes)
     placed = lay_out(pattern.chart(cut, feed), cut, face.contains)
     path = trace(placed, CHORD)
@@ -54,12 +59,10 @@ def share_above(face: ta.Face, tool: ta.Tool, made: FurtherPasses, factor: float
     return float(weight[high].sum() / weight.sum())
 
 
-@pytest.mark.parametrize(("feed", "passes"), LAID)
-@pytest.mark.parametrize("number", [0, 1], ids=["ball", "torus"])
-@pytest.mark.parametrize("outline", OUTLINES)
+@pytest.mark.parametrize(("outline", "number", "feed", "passes"), CASES)
 def test_nothing_is_left_on_which_the_cutter_may_stand(outline: str, number: int, feed: str, passes: str) -> None:
     face, tool = sheet(outline), CUTTERS[number]
-    made = laid(face, number, feed, passes)
+    made = laid(outline, number, feed, passes)
     before = share_above(face, tool, made, FACTOR)
     assert made.left / face.area == pytest.approx(before, abs=OVERLOOKED + 2e-4)
     left = RestFinder(face, tool, SCALLOP, walls=lambda uv: ~face.contains(uv)).find
@@ -72,14 +75,14 @@ def test_nothing_is_left_on_which_the_cutter_may_stand(outline: str, number: int
 
 def test_there_is_something_to_be_mended() -> None:
     """Else the test above would show nothing."""
-    shares = {laid_as: [laid(sheet(outline), number, *laid_as).left / sheet(outline).area
+    shares = {laid_as: [laid(outline, number, *laid_as).left / sheet(outline).area
                         for outline in OUTLINES for number in (0, 1)] for laid_as in LAID}
     assert all(sum(share > 2 * OVERLOOKED for share in some) >= 5 for some in shares.values()), shares
 
 
 def test_no_more_passes_than_it_takes() -> None:
     """The largest zones come first; the others stay where they are less than may be overlooked."""
-    made = laid(sheet("round"), 0, "u")
+    made = laid("round", 0, "u")
     assert len(made.zones) > 2
     few = add_passes_over_zones(made.placed, made.zones, None)
     assert 0 < len(few.steps) - len(made.placed.steps) < 2 * len(made.zones)
@@ -92,5 +95,5 @@ def test_no_more_passes_than_it_takes() -> None:
 
 
 def test_a_zone_on_which_the_cutter_may_not_stand_is_left_alone() -> None:
-    made = laid(sheet("acute"), 0, "u")
+    made = laid("acute", 0, "u")
     assert add_passes_over_zones(made.placed, made.zones, lambda uv: np.zeros(len(uv), dtype=bool)) is made.placed

@@ -124,7 +124,7 @@ def block_with_pits(seed: int) -> Part:
     return ta.load(solid)
 
 
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 40))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 40))])
 def test_nothing_fits_where_that_is_proven(seed: int) -> None:
     part, tools = block_with_pits(seed), [BALL, BULL, ta.Tool.ball(2, stickout=12, holder=HOLDER)]
     scene, claims = ReachScene.of(part), 0

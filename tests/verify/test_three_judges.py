@@ -102,8 +102,10 @@ def compared(solid, seed, tolerance, bend, role="skin", lean=LEAN):
     return truth, planned, told
 
 
-@pytest.mark.parametrize("tolerance", [0.002, 0.01])
-@pytest.mark.parametrize("turn", [0.5, 5.0, 45.0, 90.0, 150.0, 170.0])
+@pytest.mark.parametrize(("turn", "tolerance"), [
+    (0.5, 0.01), (5.0, 0.002), (45.0, 0.01), (90.0, 0.002), (150.0, 0.01), (170.0, 0.002), *(
+        pytest.param(*case, marks=pytest.mark.long) for case in
+        [(0.5, 0.002), (5.0, 0.01), (45.0, 0.002), (90.0, 0.01), (150.0, 0.002), (170.0, 0.01)])])
 def test_convex_edges(turn, tolerance):
     """An entry or a run-out over an edge is as deep as its inmost point lies below the nearer face."""
     compared(edge(np.radians(turn)), int(10 * turn), tolerance, np.radians(turn))

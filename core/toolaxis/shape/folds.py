@@ -183,7 +183,7 @@ def _turning_beside_pole(nets: Array) -> Bools:
     slack = distance[:, None, None] * np.abs(np.diff(weight[..., 0], axis=2))
     towards = _cone(np.diff(moments, axis=2)[None], slack[None])
     apart = np.arccos(np.clip(np.abs(dot(around[0], towards[0])), 0.0, 1.0))
-    return np.asarray(around[1] + towards[1] >= apart)[0]
+    return np.asarray((around[1] + towards[1] >= apart)[0])
 
 
 def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
