@@ -198,6 +198,34 @@ def test_what_is_proven_to_keep_its_side_beside_a_pole_does(turned: int) -> None
     assert proven > 10 and turning > 10
 
 
+def test_what_is_proven_to_keep_its_side_with_weights_of_rows_and_columns_does() -> None:
+    """Patches of all kinds whose weights are products, as those of drawn and turned arcs."""
+    proven = turning = 0
+    uv = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 81)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        flat = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0), [0.0], indexing="ij"), axis=-1)[:, :, 0]
+        net = flat + (0.2 + seed / 60) * rng.normal(size=flat.shape)
+        weights = np.exp(rng.normal(size=(4, 1))) * np.exp(rng.normal(size=(1, 3)))
+        face = Face.from_bspline(net, (3, 2), weights=weights)
+        if face.surface.turning_cells.turning.any():
+            turning += 1
+            continue
+        proven += 1
+        d = face.evaluate(uv)
+        normal = np.cross(d.su, d.sv)
+        normal = (normal / np.linalg.norm(normal, axis=1)[:, None]).reshape(81, 81, 3)
+        for axis in (0, 1):
+            assert np.sum(np.delete(normal, 0, axis) * np.delete(normal, -1, axis), axis=-1).min() > 0
+    assert proven > 10 and turning > 10
+
+
+def test_a_long_thin_rounding_has_no_folds() -> None:
+    """230 x 0.44 mm, as on a casting: its cells are longer than the arc across them is wide."""
+    rounding = CylindricalSurface(0.44, u_range=(0.0, 1.54), v_range=(0.0, 232.0)).nurbs()
+    assert not rounding.turning_cells.turning.any()
+
+
 def test_a_dome_has_no_folds_at_its_pole() -> None:
     """Nor has it any that are looked for: what was at every place near the pole took most of the time of a plan."""
     dome = SphericalSurface(7.0, v_range=(0.9, np.pi / 2)).nurbs()

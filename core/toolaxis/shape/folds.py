@@ -38,6 +38,8 @@ _EVEN = 0.9
 _STEPS, _ON_THE_WAY = 60, 17
 #: Greatest distance, mm, of control points that are one point, a pole.
 _ONE_POINT = 1e-9
+#: Greatest share of a weight by which it differs from another that is meant to be the same.
+_ROUNDING = 1e-12
 #: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
 _PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
 #: How many times finer cells are tried where some of those may turn over.
@@ -140,6 +142,7 @@ def _cell_lines(knots: Array, degree: int, finer: int) -> Array:
 
 def _turning(nets: Array) -> Bools:
     """Which homogeneous Bezier nets (nu, nv, pu + 1, pv + 1, 4) do not prove that Su x Sv keeps its side."""
+    nets = _drop_separable_weights(nets)
     weight = nets[..., 3:]
     points = nets[..., :3] / weight
     centre = points.mean(axis=(2, 3), keepdims=True)
@@ -162,6 +165,18 @@ def _turning(nets: Array) -> Bools:
                 at_the_pole = nets[pole] if end == -1 else np.flip(nets[pole], along - 1)
                 turning[pole] = _turning_beside_pole(at_the_pole if along == 3 else at_the_pole.swapaxes(1, 2))
     return turning
+
+
+def _drop_separable_weights(nets: Array) -> Array:
+    """Homogeneous nets with weights of 1 where each weight is one of its row times one of its column.
+
+    There Su is a sum, with positive factors, of steps along u between points of one column, and so lies in the cone of
+    the legs whatever the weights are: arcs that are drawn or turned, as fillets of CAD systems, have such weights.
+    """
+    weight = nets[..., 3]
+    product = weight[..., :, :1] * weight[..., :1, :] / weight[..., :1, :1]
+    separable = (np.abs(product - weight) <= _ROUNDING * weight).all(axis=(2, 3))
+    return np.asarray(np.where(separable[..., None, None, None], nets / nets[..., 3:], nets))
 
 
 def _turning_beside_pole(nets: Array) -> Bools:
