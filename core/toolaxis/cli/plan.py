@@ -51,6 +51,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                                          greatest_step_over=spec.inputs.greatest_step_over, lead=spec.inputs.lead))
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
+        from toolaxis.job.planning.parallel import check_workers
         from toolaxis.job.planning.pipeline import plan
 
         with compiling_ahead(), show_progress(asked) as progress:
@@ -73,7 +74,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
             with writing():
                 made = write_plan(made, stage.folder)
             if not given.no_pictures and made.outcome != "cancelled":
-                _draw(made, stage.folder, progress)
+                _draw(made, stage.folder, progress, check_workers(given.workers))
         with writing():
             stage.publish(OF_PLAN)
     return _print_plan(made, given)
@@ -126,12 +127,12 @@ def _roughness(given: Namespace) -> float | None:
     return None if given.roughness is None else float(given.roughness) / 1000
 
 
-def _draw(made: Plan, folder: Path, progress: Progress) -> None:
+def _draw(made: Plan, folder: Path, progress: Progress, workers: int) -> None:
     """Draw the pictures; a plan is worth keeping without them."""
     from toolaxis.job.output.pictures import draw_plan
 
     try:
-        draw_plan(made, folder, progress)
+        draw_plan(made, folder, progress, workers)
     except Cancelled:
         say("toolaxis: stopped while drawing; the plan is whole, pictures are missing")
     except Exception as reason:

@@ -78,9 +78,10 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress) -> None:
     """Draw the maps; a verdict is worth keeping without them."""
     from toolaxis.job.output.pictures import draw_verdict
+    from toolaxis.job.planning.parallel import check_workers
 
     try:
-        draw_verdict(plan, verdict, folder, progress)
+        draw_verdict(plan, verdict, folder, progress, check_workers(None))
     except Cancelled:
         say("toolaxis: stopped while drawing; the verdict is whole, pictures are missing")
     except Exception as reason:

@@ -175,8 +175,8 @@ def _drop_separable_weights(nets: Array) -> Array:
     """
     weight = nets[..., 3]
     product = weight[..., :, :1] * weight[..., :1, :] / weight[..., :1, :1]
-    separable = (np.abs(product - weight) <= _ROUNDING * weight).all(axis=(2, 3), keepdims=True)
-    return np.asarray(np.where(separable[..., None], nets / nets[..., 3:], nets))
+    differs: Array = (np.abs(product - weight) / weight).max(axis=(2, 3), keepdims=True)[..., None]
+    return np.asarray(np.where(differs <= _ROUNDING, nets / nets[..., 3:], nets))
 
 
 def _turning_beside_pole(nets: Array) -> Bools:
