@@ -182,7 +182,7 @@ def _add_search_options(sub: _Parser) -> None:
 
 def _add_other_options(sub: _Parser) -> None:
     """Processes, rates, what is written, and moving axes."""
-    sub.add_argument("--workers", type=int, metavar="N", help="processes to plan with; all cores unless given")
+    sub.add_argument("--workers", type=int, metavar="N", help="processes to plan and draw with; all cores unless given")
     sub.add_argument("--feedrate", type=float, metavar="MM/MIN",
                      help="for all tools (default: each tool's own, else 1000)")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
