@@ -19,7 +19,8 @@ def sheet(x: float) -> ta.Face:
 
 @pytest.fixture(scope="module")
 def made() -> Plan:
-    return ta.plan([sheet(0.0), sheet(40.0)], "ball:12", 0.2, machine="cone:0,0,1,10", workers=1)
+    """Of three faces: with two processes the last is begun when one of the others is finished."""
+    return ta.plan([sheet(0.0), sheet(40.0), sheet(80.0)], "ball:12", 0.2, machine="cone:0,0,1,10", workers=1)
 
 
 def images(folder: Path) -> dict[str, bytes]:
@@ -40,7 +41,7 @@ def test_any_number_of_processes_draws_the_same(made: Plan, tmp_path: Path) -> N
 @pytest.mark.parametrize("workers", [1, 2])
 def test_what_cannot_be_drawn_costs_no_other_picture(made: Plan, tmp_path: Path, workers: int,
                                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    first, second = made.operations
+    first, second, _ = made.operations
     usual = pictures.operation_picture
 
     def fail(plan: Plan, op: object) -> object:
