@@ -35,6 +35,12 @@ def sheets(count: int = 3) -> Part:
     return Part.from_faces([ta.Face.from_bspline(np.stack([x + 40 * k, y, z], axis=-1)) for k in range(count)])
 
 
+@pytest.fixture(scope="module")
+def faultless() -> Plan:
+    """The plan of three sheets in which nothing fails."""
+    return ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1)
+
+
 def planted(monkeypatch: pytest.MonkeyPatch, raised: Exception, number: int = 2) -> None:
     """A fault in whatever looks closer at axes of one face."""
     whole, screen = Feasibility.witness, Feasibility.screen
@@ -196,23 +202,24 @@ def test_a_fault_of_the_whole_keeps_every_face_and_the_plan_incomplete(monkeypat
     assert [one.sentence for one in read_plan(tmp_path / "out").faults] == [fault.sentence]
 
 
-def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(monkeypatch: pytest.MonkeyPatch,
+def test_a_face_that_cannot_be_written_keeps_no_other_from_the_disk(faultless: Plan, monkeypatch: pytest.MonkeyPatch,
                                                                     tmp_path: Path) -> None:
     from toolaxis.job.files import plan_folder as folder
 
-    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), folder.operation_text
+    whole = folder.operation_text
     monkeypatch.setattr(folder, "operation_text", lambda op, inputs: 1 // 0 if op.name.endswith("face2") else
                         whole(op, inputs))
     with stage_folder(tmp_path / "out") as stage:
-        written = write_plan(made, stage.folder)
+        written = write_plan(faultless, stage.folder)
         stage.publish()
     assert [op.done for op in written.operations] == [True, False, True] and written.outcome == "incomplete"
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         "failed-op02-face2.txt", "op01-face1.apt", "op03-face3.apt", "part.json", PLAN]
 
 
-def test_the_judge_s_own_fault_is_told_of_the_operation_that_it_was_about(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, whole = ta.plan(sheets(), TOOL, SCALLOP, limits=LIMITS, workers=1), judge.measure
+def test_the_judge_s_own_fault_is_told_of_the_operation_that_it_was_about(faultless: Plan,
+                                                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    made, whole = faultless, judge.measure
 
     def _measure(task, *rest):
         if task.name.endswith("face2"):
