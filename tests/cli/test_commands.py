@@ -175,7 +175,8 @@ def wait_for(process: subprocess.Popen[str], text: str, limit: float = 120.0) ->
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
 def test_a_stop_keeps_finished_faces_in_one_whole_plan(sheet: Path, tmp_path: Path, sign: signal.Signals) -> None:
-    process = start(["plan", str(sheet), *FAST, "--faces=1,2,3", "--workers=2", "--out", str(tmp_path / "out")])
+    process = start(["plan", str(sheet), *FAST, "--faces=1,2,3", "--workers=2", "--no-pictures",
+                     "--out", str(tmp_path / "out")])
     wait_for(process, "face 3 (3 of 3)")
     process.send_signal(sign)
     _, err = process.communicate(timeout=120)
