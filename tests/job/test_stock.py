@@ -91,7 +91,7 @@ def test_a_holder_over_stock_is_found_by_the_judge() -> None:
 
 def plan_hill(stock: float, more: dict[str, str]) -> Plan:
     tool = ta.Tool.torus(8, 1, flute_length=16, stickout=50, holder=[(10, 0), (10, 40)])
-    return ta.plan(hill(), tool, 0.2, stock=stock, workers=1, **more)  # type: ignore[arg-type]
+    return ta.plan(hill(), tool, 0.2, stock=stock, workers=1, **more)
 
 
 @pytest.fixture(scope="module", params=[{}, {"strategy": "sturz"}], ids=["fixed", "sturz"])
