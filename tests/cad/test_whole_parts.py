@@ -23,6 +23,7 @@ MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bos
         "11_blisk": "blisk", "12_impeller": "impeller", "13_skin": "skin", "14_blade": "blade"}
 PATCHES = ("waves", "outline", "boss", "bosses")
 ROTORS = ("blisk", "impeller")
+SLOW = ("07_waves", "11_blisk")
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +53,8 @@ def test_every_script_is_known():
     assert sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py") if path.stem > "07") == sorted(MADE)
 
 
-@pytest.mark.parametrize("script", MADE)
+@pytest.mark.parametrize("script", [
+    pytest.param(script, marks=pytest.mark.long if script in SLOW else ()) for script in MADE])
 def test_a_script_makes_what_is_committed(script, parts, tmp_path, monkeypatch):
     name = MADE[script]
     monkeypatch.syspath_prepend(str(EXAMPLES))

@@ -125,7 +125,8 @@ def test_newton_and_march_agree_on_rippled_surfaces(name, feed):
     assert fast.min() >= 0 and wrong <= 1  # the two look at windows of the pass that differ by a node
 
 
-@pytest.mark.parametrize("name", ["torus:12x1", "flat:10", "tapered:6x1x5"])
+@pytest.mark.parametrize("name", [
+    "torus:12x1", *(pytest.param(name, marks=pytest.mark.long) for name in ("flat:10", "tapered:6x1x5"))])
 def test_the_march_sees_tips_jump_at_a_crease(name):
     """Two planes that meet at u = 0.5 under an angle, against thousands of positions of the cutter."""
     rng = np.random.default_rng(len(name))

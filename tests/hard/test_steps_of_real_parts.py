@@ -48,7 +48,7 @@ def stroke_along(case, part):
     return tips(found.point, own.normal(found.uv), axis, case.tool, 0.0), axis
 
 
-@pytest.mark.parametrize("tolerance", [0.002, 0.01])
+@pytest.mark.parametrize("tolerance", [0.002, pytest.param(0.01, marks=pytest.mark.long)])
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
 def test_a_pass_along_the_edge_is_free(case, tolerance, parts):
     part = parts(case.name)

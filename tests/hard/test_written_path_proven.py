@@ -14,7 +14,8 @@ def _flat(corner: list[float], along: list[float], across: list[float]) -> ta.Fa
     return ta.Face.from_bspline(np.array([[p, p + b], [p + a, p + a + b]]), degree=(1, 1))
 
 
-@pytest.mark.parametrize("direction", ["zigzag", "climb", "conventional"])
+@pytest.mark.parametrize("direction", [
+    "zigzag", *(pytest.param(way, marks=pytest.mark.long) for way in ("climb", "conventional"))])
 def test_no_motion_of_a_plan_comes_nearer_to_a_wall_than_allowed(direction: str) -> None:
     floor = _flat([0, 0, 0], [14, 0, 0], [0, 8, 0])
     walls = [_flat([14.4, -5, -5], [0, 0, 18], [0, 18, 0]), _flat([-0.4, -5, -5], [0, 18, 0], [0, 0, 18]),

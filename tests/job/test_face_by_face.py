@@ -154,6 +154,7 @@ def test_a_part_taken_apart_is_the_one_with_the_other_skins() -> None:
     assert take_apart(again, [4]).faces == part.faces
 
 
+@pytest.mark.long
 def test_an_impeller_skin_of_other_people(shared_parts: Path) -> None:
     """Found: as one face nothing of it had an axis, for strips were asked of lines beside it."""
     pytest.importorskip("OCP")

@@ -73,8 +73,9 @@ def checked(made: Plan, said: str, number: int = 2) -> None:
 
 
 @pytest.mark.parametrize("workers", [1, FORKED])
-@pytest.mark.parametrize("raised, said", [(IndexError("odd index"), "IndexError: odd index"),
-                                          (MemoryError(), "out of memory"), (AssertionError(), "AssertionError")])
+@pytest.mark.parametrize("raised, said", [
+    (IndexError("odd index"), "IndexError: odd index"), (MemoryError(), "out of memory"),
+    pytest.param(AssertionError(), "AssertionError", marks=pytest.mark.long)])
 def test_a_fault_in_a_search_costs_its_face(workers: int, raised: Exception, said: str,
                                             monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     planted(monkeypatch, raised)

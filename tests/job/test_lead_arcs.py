@@ -84,8 +84,10 @@ def test_a_quarter_of_a_circle_touches_the_pass_and_rises_along_the_normal() -> 
     assert not len(arcs.points((np.zeros(3), np.zeros(3)), normal))
 
 
-@pytest.mark.parametrize("tool, more", [("ball:8", {"direction": "climb"}), ("torus:8x1", {}), ("flat:8", {}),
-                                        ("ball:8", {"strategy": "sturz"}), ("ball:8", {"passes": "planes"})])
+@pytest.mark.parametrize("tool, more", [
+    ("ball:8", {"direction": "climb"}), ("torus:8x1", {}), pytest.param("flat:8", {}, marks=pytest.mark.long),
+    pytest.param("ball:8", {"strategy": "sturz"}, marks=pytest.mark.long),
+    pytest.param("ball:8", {"passes": "planes"}, marks=pytest.mark.long)])
 def test_the_tool_comes_and_goes_on_arcs(tool: str, more: dict[str, object]) -> None:
     plan, plain = plan_hill(tool=tool, **more), plan_hill(0.0, tool, **more)
     assert plan.outcome == "complete" and plan.length == pytest.approx(plain.length, rel=1e-9)

@@ -83,6 +83,7 @@ def test_it_is_read_back(plan, tmp_path) -> None:
     np.testing.assert_allclose(again.operations[0].path.axis, plan.operations[0].path.axis, atol=1e-8)
 
 
+@pytest.mark.long
 def test_the_command_plans_a_whole_step_face_and_the_judge_passes_it(tmp_path, capsys) -> None:
     cadquery = pytest.importorskip("cadquery")
     rows = [[cadquery.Vector(x, y, 2 - 0.02 * (x - 1) ** 2 - 0.01 * y**2) for y in np.linspace(0, 4.5, 4)]

@@ -74,6 +74,7 @@ def test_no_place_is_farther_from_a_pass_than_half_of_it(most: float, tool: str,
     assert found and 0.9 * most < max(found) <= 1.02 * most
 
 
+@pytest.mark.long
 def test_4_plus_1_axes_keep_it_too() -> None:
     made = plan_hill(WIDE, strategy="four-plus-one", machine="mikron-ucp-710")
     assert made.outcome == "complete" and farthest_from_contacts(made, hill()) <= 0.5 * WIDE

@@ -60,7 +60,7 @@ def test_map_and_lobes_tell_what_was_looked_at(make):
         assert lobe.count > 0.99 * found.count or lobe.feed != found.feed
 
 
-@pytest.mark.parametrize("method", ["sphere", "sectors"])
+@pytest.mark.parametrize("method", ["sphere", pytest.param("sectors", marks=pytest.mark.long)])
 def test_both_methods_beat_the_mean_normal_side(make, method):
     face = make.seeded(73)
     found = best_axis(face, TOOL, H, method=method)

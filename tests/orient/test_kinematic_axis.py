@@ -89,7 +89,8 @@ def test_of_equal_axes_the_cheapest_is_taken_and_then_the_least_turned(tool: Too
         assert max(counts) > 1.05 * min(counts)
 
 
-@pytest.mark.parametrize("cone", [Cone((0.0, 0.0, 1.0), radians(20)), Cone((0.5, 0.2, 1.0), radians(1.2))])
+@pytest.mark.parametrize("cone", [
+    pytest.param(Cone((0.0, 0.0, 1.0), radians(20)), marks=pytest.mark.long), Cone((0.5, 0.2, 1.0), radians(1.2))])
 def test_no_free_axis_does_more_where_limits_keep_corners_away(cone: Cone) -> None:
     """A cone of 1.2 degrees lies between the nodes of the first grid of rotary angles."""
     job = task(_wave(), BALL, H, AllOf((MIKRON, cone)))

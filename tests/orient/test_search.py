@@ -52,6 +52,7 @@ def test_search_reaches_brute_force_with_few_evaluations(make, seed):
     assert ledger.feasibility.witness(found[0].axis) is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(1))
 def test_search_is_never_below_the_sectors(make, seed):
     face = make.seeded(50 + seed, 0.9)
@@ -104,7 +105,7 @@ def test_search_is_deterministic(make):
     assert (one.axes == other.axes).all() and (a[0].axis == b[0].axis).all() and a[0].value == b[0].value
 
 
-@pytest.mark.parametrize("name", ["saddle", "bowl", "flat"])
+@pytest.mark.parametrize("name", ["saddle", *(pytest.param(name, marks=pytest.mark.long) for name in ("bowl", "flat"))])
 def test_the_last_digits_of_a_surface_do_not_lead_the_search_elsewhere(make, name):
     """Mirror images cost the same: the search looks at the same axes whatever the rounding."""
     face = {"saddle": make.saddle, "bowl": lambda: make.bowl(-60.0),

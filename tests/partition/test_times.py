@@ -92,6 +92,7 @@ def test_a_whole_face_costs_what_the_search_reckons() -> None:
             assert row[k] == pytest.approx(job.worth.value(axis, k, passes, length), rel=0.15)
 
 
+@pytest.mark.long
 def test_no_division_by_length_takes_less_time(job: FaceProblem, divider: Divider) -> None:
     by_length = Divider(replace(job, worth=replace(job.worth, objective="length")), cells=(10, 10), most=4)
     timed = divider.best.prices.joined(divider.priced(by_length.best.prices.axes))

@@ -3,6 +3,7 @@
 from math import degrees, pi, radians
 
 import numpy as np
+import pytest
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.machine import Machine
@@ -19,6 +20,14 @@ TOOL = Tool.torus(diameter=12, corner_radius=1, stickout=60, holder=[(10, 0), (1
 #: Kinds of the motions of a made-up path.
 KINDS = (*[Motion.LINK] * 2, Motion.ENTRY, Motion.CUT, Motion.CUT, Motion.EXIT, *[Motion.LINK] * 4, Motion.ENTRY,
          Motion.CUT, Motion.EXIT, *[Motion.LINK] * 2, Motion.ENTRY, Motion.CUT, Motion.EXIT, Motion.LINK)
+
+
+def each_once(machines: list[str], dialects: list[str]) -> list:
+    """Pairs of both for parametrize: each machine and each dialect at least once, the other pairs with --long."""
+    often = max(len(machines), len(dialects))
+    first = {(machines[k % len(machines)], dialects[k % len(dialects)]) for k in range(often)}
+    return [pytest.param(machine, dialect, marks=() if (machine, dialect) in first else pytest.mark.long)
+            for machine in machines for dialect in dialects]
 
 
 def spin(axis: np.ndarray, angle: float) -> np.ndarray:

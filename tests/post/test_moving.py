@@ -6,7 +6,7 @@ from math import radians
 
 import numpy as np
 import pytest
-from nc_plans import DATUM, a_plan, chain
+from nc_plans import DATUM, a_plan, chain, each_once
 from nc_readers import WORD
 from scipy.spatial.transform import Rotation
 
@@ -149,8 +149,8 @@ def _judge(plan: Plan, found: Read, turn: np.ndarray, dialect: str) -> None:
     assert j == len(tips) - 1
 
 
-@pytest.mark.parametrize("dialect", DIGITS)
-@pytest.mark.parametrize("name", ["mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "head-head-portal"])
+@pytest.mark.parametrize(("name", "dialect"), each_once(
+    ["mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "head-head-portal"], list(DIGITS)))
 def test_the_program_is_the_plan(name: str, dialect: str) -> None:
     machine, where = load_machine(name), np.eye(4)
     where[:3, :3] = Rotation.from_euler("z", 37, degrees=True).as_matrix()

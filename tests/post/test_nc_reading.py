@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from nc_plans import DATUM
+from nc_plans import DATUM, each_once
 from scipy.spatial.transform import Rotation
 from test_moving import _plan
 
@@ -19,8 +19,8 @@ HEAD = "%\nO0001\n(A PROGRAM)\nG21 G90 G94 G54\nS8000 M3\nG0 A0. C0.\nG43.4 H1\n
 BODY = "G1 X0. Y0. Z0. A0. C0. F500.\nX1. A10.\n"
 
 
-@pytest.mark.parametrize("dialect", ["fanuc", "siemens", "heidenhain"])
-@pytest.mark.parametrize("name", ["mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "head-head-portal"])
+@pytest.mark.parametrize(("name", "dialect"), each_once(
+    ["mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "head-head-portal"], ["fanuc", "siemens", "heidenhain"]))
 def test_programs_with_control_of_the_tip_are_the_plan(name: str, dialect: str) -> None:
     machine, where = load_machine(name), np.eye(4)
     where[:3, :3] = Rotation.from_euler("z", 37, degrees=True).as_matrix()

@@ -57,6 +57,7 @@ def test_a_claim_that_is_wrong_is_contradicted(pit: Part, claims: list[Claim]) -
     assert any(longer.reach(place).lack <= 0 for place in lost), "with other tools the same places are reached"
 
 
+@pytest.mark.long
 def test_what_is_reached_passes_the_exact_distance(pit: Part, claims: list[Claim]) -> None:
     """The posture that brute force finds is measured with the tool's exact distance, on points of its own."""
     attack, rng = Attack(pit, TOOLS, axes=AXES), np.random.default_rng(SEED)

@@ -68,7 +68,8 @@ def test_a_pocket_is_screened_as_the_bounds_say(scenes) -> None:
     check(compare(part, scenes.rack(), some_of(part, 3)), 400)
 
 
-@pytest.mark.parametrize(("name", "faces"), [("freeform", 1), ("bosses", 2), ("blisk", 5)])
+@pytest.mark.parametrize(("name", "faces"), [("freeform", 1), ("bosses", 2),
+                                             pytest.param("blisk", 5, marks=pytest.mark.long)])
 def test_an_example_is_screened_as_the_bounds_say(scenes, name: str, faces: int) -> None:
     pytest.importorskip("OCP")
     part = ta.load(EXAMPLES / f"{name}.step")

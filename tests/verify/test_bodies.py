@@ -93,7 +93,7 @@ def test_things_move_as_the_tool_does() -> None:
         assert one.joints(tips, axes, joints[3:])[0][0] == pytest.approx(joints, abs=1e-7)
 
 
-@pytest.mark.parametrize("head", [HEAD, ROUND], ids=["cylinder", "hull"])
+@pytest.mark.parametrize("head", [pytest.param(HEAD, marks=pytest.mark.long), ROUND], ids=["cylinder", "hull"])
 def test_the_judge_measures_what_planning_bounds(head: MachineBody) -> None:
     """Planning never promises more than the judge finds, and little less."""
     rng = np.random.default_rng(7)
