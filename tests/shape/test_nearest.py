@@ -11,7 +11,7 @@ from toolaxis.numeric.vectors import rotation
 from toolaxis.shape import nearest as searches
 from toolaxis.shape.analytic import PlanarSurface, SphericalSurface, ToroidalSurface
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
+from toolaxis.shape.nearest import nearest, nearest_sample
 
 RING = np.linspace(0, 2 * np.pi, 90, endpoint=False)
 RIM = np.column_stack([0.5 + 0.4 * np.cos(RING), 0.5 + 0.4 * np.sin(RING)])
@@ -56,6 +56,19 @@ def test_against_brute_force_on_a_trimmed_face() -> None:
     assert (found.distance >= brute - 0.12).all()
     assert face.contains(found.uv + 1e-9 * ([0.5, 0.5] - found.uv)).mean() > 0.7
     assert found.point == pytest.approx(face.evaluate(found.uv).point, abs=1e-12)
+
+
+@pytest.mark.parametrize("trims", [(), (RIM, HOLE)], ids=["whole", "trimmed"])
+def test_a_sample_is_a_place_and_the_nearest_lies_in_its_cell(trims: tuple[np.ndarray, ...]) -> None:
+    face = freeform(trims)
+    points = around(face, 400)
+    found, exact = nearest_sample(face, points), nearest(face, points)
+    assert nearest(face, found.point).distance.max() < 1e-6
+    assert found.distance == pytest.approx(np.linalg.norm(found.point - points, axis=1), abs=1e-12)
+    assert (found.distance >= exact.distance - 1e-9).all()
+    assert (found.distance <= exact.distance + found.apart).all()
+    size = np.linalg.norm(np.ptp(face.box, axis=0))
+    assert found.apart.max() < 0.05 * size
 
 
 def test_kernels_find_what_their_twins_find(monkeypatch: pytest.MonkeyPatch) -> None:

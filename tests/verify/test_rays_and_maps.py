@@ -7,7 +7,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
 from toolaxis.verify.maps import surface_map
 from toolaxis.verify.material_removal import RestMaterial
-from toolaxis.verify.rays import border_points, default_spacing, face_rays
+from toolaxis.verify.rays import border_points, default_spacing, face_rays, touching_spacing
 
 
 def bump(trims=(), flip=False, height=12.0):
@@ -74,6 +74,26 @@ def test_spacing_is_half_a_millimetre_or_finer_on_small_faces():
     for bad in (0.0, -1.0, np.nan):
         with pytest.raises(InvalidInput, match="ray spacing"):
             face_rays(bump(), bad)
+
+
+@pytest.mark.parametrize(("flat", "corner", "gouge"), [(0.0, 0.1, 0.01), (0.0, 1.0, 0.002), (1.5, 0.5, 0.01)])
+def test_a_gouge_on_a_face_that_is_only_touched_has_many_rays(flat, corner, gouge):
+    """Torus that dips below a plane: what it takes off is an ellipse, wherever it lies and however it is turned."""
+    side = np.linspace(0.0, 1.6, 4)
+    face = Face.from_bspline(np.stack([*np.meshgrid(side, side, indexing="ij"), np.zeros((4, 4))], axis=-1))
+    spacing = touching_spacing(face, flat, corner, gouge)
+    assert default_spacing(face) < spacing < 0.5
+    feet, rng = face_rays(face, spacing).point[:, :2], np.random.default_rng(4)
+    half = np.sqrt(2 * gouge * np.array([flat + corner, corner]))
+    for middle, turn in zip(rng.uniform(half[0], 1.6 - half[0], (200, 2)), rng.uniform(0, np.pi, 200), strict=True):
+        way = feet - middle
+        along = np.column_stack([way @ [np.cos(turn), np.sin(turn)], way @ [-np.sin(turn), np.cos(turn)]])
+        assert (((along / half) ** 2).sum(axis=1) < 1.0).sum() >= 25
+
+
+def test_rays_of_large_faces_stay_where_a_cutter_only_touches():
+    face = Face.from_bspline(40 * bump(height=0.0).surface.control[..., :3])
+    assert touching_spacing(face, 0.0, 0.1, 0.01) == default_spacing(face)
 
 
 def test_share_of_area_and_histogram_of_a_known_height():

@@ -1,7 +1,8 @@
 """The nearest point of a trimmed face to given points."""
 
+from functools import cached_property
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -71,6 +72,42 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
     return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
 
 
+class NearestSamples(NamedTuple):
+    """For n points the nearest of a face's samples, as those from which `nearest` sets out.
+
+    Positions (n, 3), distances (n,), mm, and how far places of the face may lie from that sample without being nearer
+    to another one (n,), mm.
+    """
+
+    point: Array
+    distance: Array
+    apart: Array
+
+
+def nearest_sample(face: Face, points: Array, samples: int = 96) -> NearestSamples:
+    """The nearest of a face's samples to each point: a place of the face that takes a tenth of the time of `nearest`.
+
+    Parameters
+    ----------
+    face : Face
+    points : (n, 3) array
+        mm
+    samples : int
+        Samples along each side of the face.
+    """
+    cloud = _samples_of(face, samples).cloud
+    distance, at = cloud.tree.query(points)
+    return NearestSamples(cloud.point[at], distance, cloud.apart[at])
+
+
+class _Cloud(NamedTuple):
+    """All samples of a face: a tree of them, their positions (m, 3), and the sizes of their cells (m,), mm."""
+
+    tree: Any
+    point: Array
+    apart: Array
+
+
 class _FaceSamples:
     """Points of a face from which searches set out, kept with it: many ask for the nearest points of one face.
 
@@ -80,18 +117,47 @@ class _FaceSamples:
         Parameters of points inside.
     borders : list of (k,) array
         Positions of points along each loop.
-    compiled : _KernelFace or None
-        The face in the kernels' form; None where they cannot take it.
     """
 
     def __init__(self, face: Face, samples: int) -> None:
         u0, u1, v0, v1 = face.bounds
+        self._face, self._cell = ref(face), ((u1 - u0) / samples, (v1 - v0) / samples)
         self.grid = face.grid(samples, samples)
-        self.borders = [stations(loop, ((u1 - u0) / samples, (v1 - v0) / samples)) for loop in face.outline]
-        self._inside = _tree(face, self.grid)
-        self._along = [_tree(face, walk(loop, at)) for loop, at in zip(face.outline, self.borders, strict=True)]
+        self.borders = [stations(loop, self._cell) for loop in face.outline]
+
+    @cached_property
+    def compiled(self) -> "_KernelFace | None":
+        """The face in the kernels' form; None where they cannot take it."""
+        face = self._held()
         own_numbers = type(face.surface) is NurbsSurface
-        self.compiled = _KernelFace(face, self.borders) if _compiled.available and own_numbers else None
+        return _KernelFace(face, self.borders) if _compiled.available and own_numbers else None
+
+    @cached_property
+    def _inside(self) -> Any:
+        return _tree(self._held(), self.grid)
+
+    @cached_property
+    def _along(self) -> list[Any]:
+        face = self._held()
+        return [_tree(face, walk(loop, at)) for loop, at in zip(face.outline, self.borders, strict=True)]
+
+    def _held(self) -> Face:
+        """The face: whoever asks for its samples holds it, while they do not, so that both go together."""
+        face = self._face()
+        assert face is not None
+        return face
+
+    @cached_property
+    def cloud(self) -> _Cloud:
+        """All samples; half a cell belongs to one inside, and all of the cells around to one on the border."""
+        from scipy.spatial import cKDTree
+
+        face = self._held()
+        border = [walk(loop, at) for loop, at in zip(face.outline, self.borders, strict=True)]
+        places = face.evaluate(np.concatenate([self.grid, *border]))
+        size = np.linalg.norm(places.su, axis=1) * self._cell[0] + np.linalg.norm(places.sv, axis=1) * self._cell[1]
+        size[:len(self.grid)] /= 2.0
+        return _Cloud(cKDTree(places.point), places.point, size)
 
     def starts_inside(self, targets: Array) -> Index:
         """Numbers of the nearest points inside to each target, (n, k)."""

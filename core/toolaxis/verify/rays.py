@@ -1,7 +1,7 @@
 """Rays on a face: one in every cell of a grid of equal lengths, with the area it stands for, and more on the border."""
 
 from dataclasses import dataclass
-from math import sqrt
+from math import pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 
 #: Greatest spacing of rays, mm, and how many a face may hold before it grows.
 SPACING, MOST_RAYS = 0.5, 400_000
+
+#: How many rays stand at least on what a cutter takes off deeper than a gouge may be, on a face that it only touches.
+_ON_GOUGE = 40
 
 #: Steps of the sequence that places a ray in its cell (Roberts' R2): with it no row of rays runs along a pass.
 _R2 = (0.7548776662466927, 0.5698402909980532)
@@ -61,6 +64,31 @@ def default_spacing(face: Face) -> float:
     """
     size = sqrt(max(face.area, 1e-12))
     return max(min(SPACING, size / 150), size / sqrt(MOST_RAYS))
+
+
+def touching_spacing(face: Face, flat_radius: float, corner_radius: float, gouge: float) -> float:
+    """Spacing of rays for a face that a cutter only touches, where nothing but gouges is looked for, mm.
+
+    On a small face `default_spacing` would lay many times as many rays as tell of any gouge.
+
+    Parameters
+    ----------
+    face : Face
+    flat_radius, corner_radius : float
+        Of the cutter, mm.
+    gouge : float
+        How deep a gouge may be, mm.
+
+    Notes
+    -----
+    A torus of radii R and r that goes to a depth d below a plane takes off an ellipse with half axes sqrt(2 r d) and
+    sqrt(2 R d), but for terms of higher order in d; an edge that leans half a right angle takes off no less than d
+    across.
+    """
+    across = max(sqrt(2.0 * corner_radius * gouge), gouge)
+    along = sqrt(2.0 * (flat_radius + corner_radius) * gouge)
+    enough = sqrt(pi * across * along / _ON_GOUGE)
+    return max(default_spacing(face), min(SPACING, enough))
 
 
 #: The rays of the faces used last, since operations side by side look at the same neighbours.

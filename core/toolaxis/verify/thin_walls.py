@@ -1,21 +1,27 @@
 """How far a ray may be followed inwards before another place of the part is nearer than its foot: in thin walls, and
 beside edges."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest
+from toolaxis.shape.nearest import nearest, nearest_sample
 
 Array = NDArray[np.float64]
 
 #: By what share another place has to be nearer than a ray's foot, so that a face that goes on nearly smoothly does not
 #: count, and by how much, mm.
 _NEARER, _ROUNDING = 0.02, 1e-6
+#: Share of a depth that samples of a face may lie apart to tell for all of it: what is square to the way to the nearest
+#: place at this share of its length is farther by half of the share's square, half of `_NEARER`.
+_DENSE = 0.14
 
 
-def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], depth: Array) -> Array:
+def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], depth: Array,
+                          enough: Array | float = 0.0) -> Array:
     """How far rays may be followed inwards until another place of the part is nearer than their foot.
 
     What is cut beyond that depth lies below the other place, and is told there; behind a wall there is only air.
@@ -28,10 +34,13 @@ def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], d
         Of the part, the rays' own among them.
     depth : (m,) array
         Greatest depths, mm.
+    enough : (m,) array or float
+        Depths below which no ray need be told more closely, mm: it is left where it first falls below.
 
     Returns
     -------
-    (m,) array, mm; never less than the depth where another place begins to be nearer, which counts from 2 % on
+    (m,) array, mm; never less than the depth where another place begins to be nearer, which counts from 2 % on, and
+    from 3 % where samples of a face tell
 
     Notes
     -----
@@ -40,24 +49,60 @@ def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], d
     medial axis point approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012),
     pp. 7-19, section 3.
     """
-    limit = depth.copy()
+    limit, enough = depth.copy(), np.broadcast_to(enough, depth.shape)
     for face in faces:
-        left = np.arange(len(foot))
+        left, unsure = np.flatnonzero(limit > enough), []
         while len(left):
-            left, nearest_to = _find_nearer(face, foot, normal, limit, left)
-            way = foot[left] - nearest_to
-            limit[left] = 0.5 * dot(way, way) / dot(way, normal[left])
+            found = _find_nearer_sample(face, foot, normal, limit, left)
+            unsure.append(found.unsure)
+            left = _shorten(limit, enough, (foot, normal), found)
+        left = np.concatenate(unsure) if unsure else left
+        while len(left):
+            left = _shorten(limit, enough, (foot, normal), _find_nearer(face, foot, normal, limit, left))
     return limit
 
 
-def _find_nearer(face: Face, foot: Array, normal: Array, depth: Array,
-                 asked: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array]:
-    """Which of some rays, at their depths, have a place of a face nearer than their feet, and these places, (k, 3)."""
+class _Nearer(NamedTuple):
+    """Rays that have a place nearer than their feet (k,), these places (k, 3), and rays of which samples are too far
+    apart to tell that there is none."""
+
+    ray: NDArray[np.int64]
+    place: Array
+    unsure: NDArray[np.int64]
+
+
+def _shorten(limit: Array, enough: Array, rays: tuple[Array, Array], found: _Nearer) -> NDArray[np.int64]:
+    """Take depths back to where a ball through foot and nearer place has its middle; the rays to be asked again."""
+    way = rays[0][found.ray] - found.place
+    limit[found.ray] = 0.5 * dot(way, way) / dot(way, rays[1][found.ray])
+    return found.ray[limit[found.ray] > enough[found.ray]]
+
+
+def _find_nearer_sample(face: Face, foot: Array, normal: Array, depth: Array, asked: NDArray[np.int64]) -> _Nearer:
+    """Which of some rays, at their depths, have a sample of a face nearer than their feet."""
+    rows, point, least = _ask_near_box(face, foot, normal, depth, asked)
+    if not len(rows):
+        return _Nearer(rows, np.zeros((0, 3)), rows)
+    found = nearest_sample(face, point)
+    nearer = found.distance < least
+    coarse = ~nearer & (found.apart > _DENSE * found.distance)
+    return _Nearer(rows[nearer], found.point[nearer], rows[coarse & (found.distance - found.apart < least)])
+
+
+def _find_nearer(face: Face, foot: Array, normal: Array, depth: Array, asked: NDArray[np.int64]) -> _Nearer:
+    """Which of some rays, at their depths, have a place of a face nearer than their feet."""
+    rows, point, least = _ask_near_box(face, foot, normal, depth, asked)
+    if not len(rows):
+        return _Nearer(rows, np.zeros((0, 3)), rows)
+    found = nearest(face, point)
+    nearer = found.distance < least
+    return _Nearer(rows[nearer], found.point[nearer], rows[:0])
+
+
+def _ask_near_box(face: Face, foot: Array, normal: Array, depth: Array,
+                  asked: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array, Array]:
+    """Rays at whose depths the box of a face is nearer than counts, the places there, and the distances that count."""
     point, least = foot[asked] - depth[asked, None] * normal[asked], (1.0 - _NEARER) * depth[asked] - _ROUNDING
     away = np.maximum(np.maximum(face.box[0] - point, point - face.box[1]), 0.0)
-    rows = np.flatnonzero(np.linalg.norm(away, axis=1) < least)
-    if not len(rows):
-        return rows, np.zeros((0, 3))
-    found = nearest(face, point[rows])
-    nearer = found.distance < least[rows]
-    return asked[rows[nearer]], found.point[nearer]
+    near = np.linalg.norm(away, axis=1) < least
+    return asked[near], point[near], least[near]
