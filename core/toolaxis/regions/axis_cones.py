@@ -1,6 +1,8 @@
 """All axes as cones: cells of a cube's sides seen from its middle, which are halved each way."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,18 +64,59 @@ class AxisCones:
         place = (self.place[:, None] + _QUARTERS * self.half[:, None, None]).reshape(-1, 2)
         return AxisCones(np.repeat(self.side, 4), place, np.repeat(self.half / 2, 4))
 
-    def join(self, others: "AxisCones") -> "AxisCones":
-        """These cones and others.
+    @staticmethod
+    def join(parts: Sequence["AxisCones"]) -> "AxisCones":
+        """The cones of all of some lists, of which there is one at least.
 
         Parameters
         ----------
-        others : AxisCones
+        parts : sequence of AxisCones
         """
-        return AxisCones(np.concatenate([self.side, others.side]), np.concatenate([self.place, others.place]),
-                         np.concatenate([self.half, others.half]))
+        return AxisCones(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("side", "place", "half")))
 
     def __len__(self) -> int:
         return len(self.side)
+
+
+class CellCones(NamedTuple):
+    """Pairs of a cell, by its number, and a cone."""
+
+    cell: Indices
+    cones: AxisCones
+
+    def pick(self, rows: Bools | Indices) -> "CellCones":
+        """Some of the pairs."""
+        return CellCones(self.cell[rows], self.cones.pick(rows))
+
+    def halve(self) -> "CellCones":
+        """Four pairs in place of each, with its cone halved each way."""
+        return CellCones(np.repeat(self.cell, 4), self.cones.halve())
+
+    def join(self, others: "CellCones") -> "CellCones":
+        """These pairs and others."""
+        return CellCones.join_all([self, others])
+
+    @staticmethod
+    def join_all(parts: Sequence["CellCones"]) -> "CellCones":
+        """The pairs of all of some lists, of which there is one at least."""
+        return CellCones(np.concatenate([one.cell for one in parts]), AxisCones.join([one.cones for one in parts]))
+
+    def hand_down(self, left: Indices, parent: Indices) -> "CellCones":
+        """The pairs of cells for their quarters.
+
+        Parameters
+        ----------
+        left : (m,) array of int
+            Numbers of the cells that were halved.
+        parent : (k,) array of int
+            Of which of these each quarter is one.
+        """
+        pairs = self.pick(np.argsort(self.cell, kind="stable"))
+        first, last = (np.searchsorted(pairs.cell, left[parent], side=side) for side in ("left", "right"))
+        count = last - first
+        start = np.repeat(first - np.cumsum(count) + count, count)
+        rows = start + np.arange(count.sum())
+        return CellCones(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(rows))
 
 
 def first_cones() -> AxisCones:
@@ -82,6 +125,25 @@ def first_cones() -> AxisCones:
     line = half * (2 * np.arange(_FIRST) + 1) - np.pi / 4
     place = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
     return AxisCones(np.repeat(np.arange(6), len(place)), np.tile(place, (6, 1)), np.full(6 * len(place), half))
+
+
+def shift_of_axis(flat: float, angle: Array, slack: Array, turn: Array) -> Array:
+    """By how much the way from a cutter's corner to its axis may end elsewhere, (n,) mm.
+
+    Parameters
+    ----------
+    flat : float
+        Length of that way, mm.
+    angle, slack, turn : (n,) arrays
+        Angles of axes and normals, by how much they may differ, and by how much the axes alone may, rad.
+
+    Notes
+    -----
+    At an angle t of axis and normal, their turns turn the way by as much over sin t.
+    """
+    least = np.sin(np.clip(np.minimum(angle - slack, np.pi - angle - slack), 0.0, np.pi / 2))
+    turned = np.where(least > 0, slack / np.where(least > 0, least, 1.0), np.pi) + turn
+    return np.asarray(2 * flat * np.sin(np.minimum(turned, np.pi) / 2))
 
 
 def _directions(side: Indices, place: Array) -> Array:

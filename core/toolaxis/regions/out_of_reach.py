@@ -7,7 +7,7 @@ them.  What is not decided is halved: the cone or the cell, whichever leaves mor
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.placement import tips
 from toolaxis.numeric.vectors import angle_between
-from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import breathe
-from toolaxis.regions.axis_cones import AxisCones, first_cones
+from toolaxis.regions.axis_cones import CellCones, first_cones, shift_of_axis
+from toolaxis.regions.axis_lines import AxisLines
 from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
+from toolaxis.regions.rectangles import FaceRectangles, halve_rectangles, is_as_measured
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
@@ -27,20 +28,12 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-#: Cells at first, about, and the fewest each way; how often undecided ones are halved each way, and how many there may
-#: be at once.
-_CELLS, _FEWEST, _HALVINGS, _MOST_CELLS = 100, 3, 4, 6000
-#: Cells each way from which it is told how long a face is, and how wide.
-_COARSE = 8
+#: How often undecided cells are halved each way, and how many there may be at once.
+_HALVINGS, _MOST_CELLS = 4, 6000
 #: Radius of cones that are not halved any more, rad, and pairs of a cell and a cone that are tried for a face in all.
 _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
-#: By how much more than at nine places of it a cell may reach from its middle, and its normals may turn.
-_BULGE = 1.1
-#: Places of a cell, in halves of it from its middle, and how near to its border it is asked whether it is on the face.
-_PLACES, _WITHIN = np.array([-1.0, 0.0, 1.0]), 0.98
-#: Places each way of a cell at which it is looked once more before anything is claimed of it, nowhere evenly apart:
-#: what repeats itself along a face, ribs or waves, could look the same at all the others.
-_CHECKED = np.concatenate([[-1.0, 1.0], 2 * (0.6180339887498949 * np.arange(1, 12) % 1.0) - 1.0])
+#: Pairs in place of which one more cone of lines may be looked along, and how many may be in any case.
+_PAIRS_FOR_CONE, _FEWEST_CONES = 150, 500
 #: A part of a tool is cut into slices whose upper end is so many times as high as the lower one; they overlap by half.
 #: Height from which on slices grow, mm.
 _SLICE, _LOWEST = 4.0, 2.0
@@ -63,56 +56,6 @@ class OutOfReach(NamedTuple):
     by_corner: float
     reached: float
     rectangles: Array
-
-
-@dataclass(frozen=True, eq=False)
-class _Rectangles:
-    """Rectangles of the parameters.
-
-    middle, half : (n, 2) arrays, of u and v;  point, normal : (n, 3) arrays, at the contact, mm;  area : (n,) array,
-    mm^2 of the face;  off : (n,) array, mm, how far a place of the cell lies from the contact at most;  turn : (n,)
-    array, rad, the same of its normals.
-    """
-
-    middle: Array
-    half: Array
-    point: Array
-    normal: Array
-    area: Array
-    off: Array
-    turn: Array
-
-    def pick(self, rows: Bools | Indices) -> "_Rectangles":
-        """Some of the cells."""
-        return _Rectangles(*(getattr(self, one.name)[rows] for one in fields(self)))
-
-    @property
-    def rectangles(self) -> Array:
-        """Least and greatest u, least and greatest v, (n, 4)."""
-        low, high = self.middle - self.half, self.middle + self.half
-        return np.column_stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]])
-
-    def __len__(self) -> int:
-        return len(self.middle)
-
-
-class _CellCones(NamedTuple):
-    """Pairs of a cell, by its number, and a cone."""
-
-    cell: Indices
-    cones: AxisCones
-
-    def pick(self, rows: Bools | Indices) -> "_CellCones":
-        """Some of the pairs."""
-        return _CellCones(self.cell[rows], self.cones.pick(rows))
-
-    def halve(self) -> "_CellCones":
-        """Four pairs in place of each, with its cone halved each way."""
-        return _CellCones(np.repeat(self.cell, 4), self.cones.halve())
-
-    def join(self, others: "_CellCones") -> "_CellCones":
-        """These pairs and others."""
-        return _CellCones(np.concatenate([self.cell, others.cell]), self.cones.join(others.cones))
 
 
 def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
@@ -143,10 +86,13 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     **Properties**: 1. no tool at any contact in what is proven, with any axis within the limits, passes the exact check
     of `toolaxis.feasibility.feasibility.Feasibility.reach`; 2. areas add up to no more than that of the face.
     """
-    cells = _first_cells(face)
-    proofs = _proofs(face, tools, scene, len(cells))
-    proven = by_corner = reached = 0.0
-    found: list[Array] = []
+    required = scene.required(face, steps_count=False)  # the exact check does not charge steps to the cutter
+    lines = AxisLines.look(face, tools, required, scene, max(_FEWEST_CONES, most_pairs // _PAIRS_FOR_CONE))
+    cells = lines.left
+    proofs = _proofs(tools, scene, required, len(cells))
+    proven = float(sum(some.area.sum() for some in lines.proven))
+    by_corner = reached = 0.0
+    found = [some.rectangles for some in lines.proven]
     tried = 0
     for halving in range(_HALVINGS + 1):
         surely, narrow = _smallest_corner_gouges(proofs, cells)
@@ -157,7 +103,7 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
             open_[proof.pairs.cell] |= ~narrow[proof.pairs.cell]
         closed = ~surely & ~met & ~open_
         claimed = np.flatnonzero(surely | closed)
-        unlike = claimed[~_is_as_measured(face, cells.pick(claimed))]
+        unlike = claimed[~is_as_measured(face, cells.pick(claimed))]
         surely[unlike], closed[unlike] = False, False  # it stays undecided
         by_corner += float(cells.area[surely].sum())
         proven += float(cells.area[surely | closed].sum())
@@ -166,78 +112,11 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
         left = np.flatnonzero(open_ & ~met)
         if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried > most_pairs:
             break
-        cells, parent = _halve(face, cells.pick(left))
+        cells, parent = halve_rectangles(face, cells.pick(left))
         for proof in proofs:
             proof.hand_down(left, parent)
     whole = face.area
     return OutOfReach(min(proven, whole), min(by_corner, whole), min(reached, whole), np.concatenate(found))
-
-
-def _first_cells(face: Face) -> _Rectangles:
-    u, v = Lattice(face, _shape_for(face)).lines
-    middle = np.stack(np.meshgrid((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
-    half = np.stack(np.meshgrid(np.diff(u) / 2, np.diff(v) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
-    return _measure(face, middle, half, face.area)[0]
-
-
-def _shape_for(face: Face) -> tuple[int, int]:
-    """Cells along u and along v, about as long as they are wide."""
-    along, across = (float(np.median(lengths.sum(axis=way)))
-                     for way, lengths in enumerate(Lattice(face, (_COARSE, _COARSE)).lengths))
-    ratio = np.sqrt(along / across) if along > 0 and across > 0 else 1.0
-    count = np.clip(np.ceil(np.sqrt(_CELLS) * np.array([ratio, 1 / ratio])), _FEWEST, _CELLS // _FEWEST)
-    return int(count[0]), int(count[1])
-
-
-def _halve(face: Face, cells: _Rectangles) -> tuple[_Rectangles, Indices]:
-    """Four cells in place of each, those that have something of the face, and of which each is a quarter."""
-    ways = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
-    middle = (cells.middle[:, None] + ways * cells.half[:, None]).reshape(-1, 2)
-    found, kept = _measure(face, middle, np.repeat(cells.half / 2, 4, axis=0), float(cells.area.sum()))
-    return found, np.repeat(np.arange(len(cells)), 4)[kept]
-
-
-def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[_Rectangles, Bools]:
-    """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
-    ways = np.stack(np.meshgrid(_PLACES, _PLACES, indexing="ij"), axis=-1).reshape(-1, 2)
-    inside = face.contains((middle[:, None] + _WITHIN * ways * half[:, None]).reshape(-1, 2)).reshape(-1, 9)
-    kept = np.asarray(inside.any(axis=1))
-    middle, half, inside = middle[kept], half[kept], inside[kept]
-    uv = (middle[:, None] + ways * half[:, None]).reshape(-1, 2)
-    d, normals = face.evaluate(uv), face.normal(uv).reshape(-1, 9, 3)
-    points, size = d.point.reshape(-1, 9, 3), np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(-1, 9)
-    known = np.linalg.norm(normals, axis=2) > 0.5
-    pick = np.argmin(np.where(inside & known, np.hypot(*ways.T), np.inf), axis=1)
-    one = np.arange(len(middle))
-    point, normal = points[one, pick], normals[one, pick]
-    off = np.linalg.norm(points - point[:, None], axis=2).max(axis=1, initial=0.0)
-    turn = np.where(known, np.asarray(angle_between(normals, normal[:, None])), np.pi).max(axis=1, initial=0.0)
-    share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
-    whole = float(share.sum())
-    if whole > 0:  # of a sliver no cell may have a place
-        share *= area / whole
-    return _Rectangles(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
-
-
-def _is_as_measured(face: Face, cells: _Rectangles) -> Bools:
-    """Whether cells reach no farther, and their normals turn no more, at many places than was told from nine, (n,)."""
-    ways = np.stack(np.meshgrid(_CHECKED, _CHECKED, indexing="ij"), axis=-1).reshape(-1, 2)
-    found = np.ones(len(cells), dtype=bool)
-    for first in range(0, len(cells), _AT_ONCE // 16):
-        breathe()
-        some = slice(first, first + _AT_ONCE // 16)
-        uv = (cells.middle[some, None] + ways * cells.half[some, None]).reshape(-1, 2)
-        row = np.repeat(np.arange(len(cells))[some], len(ways))
-        inside = face.contains(uv)
-        uv, row = uv[inside], row[inside]
-        d = face.evaluate(uv)
-        normal = face.normal(uv, d)
-        off = np.linalg.norm(d.point - cells.point[row], axis=1)
-        known = np.linalg.norm(normal, axis=1) > 0.5
-        turn = np.where(known, np.asarray(angle_between(normal, cells.normal[row])), np.pi)
-        wrong = (off > cells.off[row] + _LEAST) | (turn > cells.turn[row] + _LEAST)
-        found[row[wrong]] = False
-    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -253,15 +132,14 @@ class _Slices:
     arm: Array
 
 
-def _proofs(face: Face, tools: Sequence[Tool], scene: ReachScene, cells: int) -> list["_Proof"]:
+def _proofs(tools: Sequence[Tool], scene: ReachScene, required: Array, cells: int) -> list["_Proof"]:
     """A proof for each tool, the slim ones first: what they reach need not be asked of the others."""
-    # The exact check does not charge steps in the file to the cutter, so they prove nothing.
-    required, room = scene.required(face, steps_count=False), ReachRoom.make()
+    room = ReachRoom.make()
     slim = sorted(tools, key=lambda tool: (tool.radius, tool.corner_radius))
     return [_Proof(scene, tool, required, room, cells) for tool in slim]
 
 
-def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: _Rectangles) -> tuple[Bools, Bools]:
+def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: FaceRectangles) -> tuple[Bools, Bools]:
     """Where the ball in the smallest corner of all tools gouges, whatever the axis, as `_Proof.corner_gouges`."""
     if not proofs:
         return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
@@ -273,7 +151,7 @@ class _Proof:
 
     Attributes
     ----------
-    pairs : _CellCones
+    pairs : CellCones
         The cells and cones of which it is not known whether the tool may touch the one with the other.
     """
 
@@ -286,7 +164,7 @@ class _Proof:
         self._core = _cut_into_slices(_take_off(whole, tool.flat_radius), tool.corner_radius)
         cones = first_cones()
         cell, cone = (side.ravel() for side in np.indices((cells, len(cones))))
-        self.pairs = _CellCones(cell, cones.pick(cone))
+        self.pairs = CellCones(cell, cones.pick(cone))
 
     @property
     def ball(self) -> float:
@@ -294,7 +172,7 @@ class _Proof:
         tool = self._tool
         return tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
 
-    def corner_gouges(self, cells: _Rectangles) -> tuple[Bools, Bools]:
+    def corner_gouges(self, cells: FaceRectangles) -> tuple[Bools, Bools]:
         """Where the ball in the tool's corner gouges at every contact of a cell, and where it does in the middle."""
         radius = self.ball
         if radius <= 0 or not len(cells):
@@ -308,12 +186,12 @@ class _Proof:
         surely[at] = self._blocked(ball, none[at], self._corner_off(cells)[at], places[at], cells.normal[at])
         return surely, middle
 
-    def close(self, cells: _Rectangles, asked: Bools, met: Bools, most: int) -> int:
+    def close(self, cells: FaceRectangles, asked: Bools, met: Bools, most: int) -> int:
         """Leave those pairs of which nothing is known; note in met (n,) the cells that the tool reaches in the middle.
 
         Parameters
         ----------
-        cells : _Rectangles
+        cells : FaceRectangles
         asked : (n,) array of bool
             Of which cells pairs are to be looked at.
         met : (n,) array of bool
@@ -340,7 +218,7 @@ class _Proof:
         self.pairs = kept.pick(~met[kept.cell])
         return tried
 
-    def _try(self, cells: _Rectangles, pairs: _CellCones, met: Bools) -> tuple[_CellCones, Bools]:
+    def _try(self, cells: FaceRectangles, pairs: CellCones, met: Bools) -> tuple[CellCones, Bools]:
         """The pairs that are not decided, and which of them had better be halved in their cones than in their cells."""
         cones = pairs.cones
         pairs = pairs.pick(np.lexsort((pairs.cell, cones.place[:, 1], cones.place[:, 0], cones.side, cones.half)))
@@ -359,7 +237,7 @@ class _Proof:
         own = self._corner_off(cells)[pairs.cell]
         return pairs, (radius * (self._tool.stickout or self._tool.height) >= own) & (radius > _NARROW)
 
-    def _core_blocked(self, cells: _Rectangles, pairs: _CellCones, axes: Array, radius: Array) -> Bools:
+    def _core_blocked(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Bools:
         """Whether what the tool has around the ball at its contact is blocked, to whichever side its axis lies."""
         corner = self._tool.corner_radius
         normal = cells.normal[pairs.cell]
@@ -371,20 +249,12 @@ class _Proof:
 
         Parameters
         ----------
-        left : (m,) array of int
-            Numbers of the cells that were halved.
-        parent : (k,) array of int
-            Of which of these each quarter is one.
+        left, parent : arrays of int
+            As `toolaxis.regions.axis_cones.CellCones.hand_down`.
         """
-        order = np.argsort(self.pairs.cell, kind="stable")
-        pairs = self.pairs.pick(order)
-        first, last = (np.searchsorted(pairs.cell, left[parent], side=side) for side in ("left", "right"))
-        count = last - first
-        start = np.repeat(first - np.cumsum(count) + count, count)
-        rows = start + np.arange(count.sum())
-        self.pairs = _CellCones(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(rows))
+        self.pairs = self.pairs.hand_down(left, parent)
 
-    def _may_touch(self, cells: _Rectangles, pairs: _CellCones) -> Bools:
+    def _may_touch(self, cells: FaceRectangles, pairs: CellCones) -> Bools:
         """Whether any axis of a cone may touch any place of a cell, by its angle to the normals and by the limits."""
         axes, radius, tool = pairs.cones.middle, pairs.cones.radius, self._tool
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
@@ -394,7 +264,7 @@ class _Proof:
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & (limits.excess(axes) <= radius))
 
-    def _is_seen(self, cells: _Rectangles, pairs: _CellCones, axes: Array) -> Bools:
+    def _is_seen(self, cells: FaceRectangles, pairs: CellCones, axes: Array) -> Bools:
         """Whether the axes themselves touch the contacts."""
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         found = angle <= np.pi / 2 - self._tool.half_angle
@@ -402,25 +272,18 @@ class _Proof:
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
 
-    def _corner_off(self, cells: _Rectangles) -> Array:
+    def _corner_off(self, cells: FaceRectangles) -> Array:
         """How far the middle of the corner's ball lies from that at the contact of its cell, at most, (n,) mm."""
         radius = self._tool.corner_radius + self._scene.allowance
         return np.asarray(cells.off + 2 * radius * np.sin(cells.turn / 2))
 
-    def _off(self, cells: _Rectangles, pairs: _CellCones, axes: Array, radius: Array) -> Array:
-        """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm.
-
-        At an angle t of axis and normal, their turns turn the way from the ball to the circle's middle by as much over
-        sin t.
-        """
+    def _off(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Array:
+        """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm."""
         off, flat = self._corner_off(cells)[pairs.cell], self._tool.flat_radius
         if flat <= 0:
             return off
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
-        slack = cells.turn[pairs.cell] + radius
-        least = np.sin(np.clip(np.minimum(angle - slack, np.pi - angle - slack), 0.0, np.pi / 2))
-        turn = np.where(least > 0, slack / np.where(least > 0, least, 1.0), np.pi) + radius
-        return np.asarray(off + 2 * flat * np.sin(np.minimum(turn, np.pi) / 2))
+        return np.asarray(off + shift_of_axis(flat, angle, cells.turn[pairs.cell] + radius, radius))
 
     def _blocked(self, slices: _Slices, turn: Array, off: Array, places: Array, axes: Array) -> Bools:
         """Whether a tool comes nearer to something than it may by more than it may be off.

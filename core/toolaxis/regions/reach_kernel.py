@@ -90,7 +90,7 @@ def _turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> f
 
 
 @jit_uncounted
-def _on_face(tree: ReachTree, leaf: int, u: float, v: float) -> bool:
+def is_on_leaf(tree: ReachTree, leaf: int, u: float, v: float) -> bool:
     """Whether a place of a leaf that trim edges cross is on the face: as its reference point, or an odd count away."""
     ru, rv = tree.rect[leaf, 4], tree.rect[leaf, 5]
     inside = tree.rect[leaf, 6] > 0.0
@@ -267,10 +267,10 @@ def _leaf_hit(tree: ReachTree, node: int, tool: tuple[Array, float], w: Triple, 
         state, s, t = _part_state(form, tool[0], limits, axis, (ms, mt, hs, ht))
         if state == _CLEAR:
             continue
-        if state == _TOO_NEAR and (not trimmed or _on_face(tree, leaf, u + s * du, v + t * dv)):
+        if state == _TOO_NEAR and (not trimmed or is_on_leaf(tree, leaf, u + s * du, v + t * dv)):
             return True
         if trimmed and not _near_edge(tree, leaf, (u + ms * du, v + mt * dv), (hs * du, ht * dv)):
-            if not _on_face(tree, leaf, u + ms * du, v + mt * dv):
+            if not is_on_leaf(tree, leaf, u + ms * du, v + mt * dv):
                 continue
         if max(hs * size_s, ht * size_t) <= _SMALL or waiting + 2 > DEEP:
             continue

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.feasibility.surroundings import OTHER, Obstacles, faces_of, group_surroundings
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.regions.reach_kernel import ReachTool, ReachTree
+from toolaxis.regions.solid_grid import PartSolid
 from toolaxis.shape.bounding.bounding_tree import BoundingTree, branch_roots, cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -39,6 +40,8 @@ class ReachScene:
         All faces of the part, the plane of its held side, and the obstacles, skins as the faces that they consist of.
     tree : ReachTree
         Of these faces.
+    solid : PartSolid
+        What the part is made of.
     """
 
     part: Part
@@ -48,6 +51,7 @@ class ReachScene:
     allowance: float
     faces: tuple[Face, ...]
     tree: ReachTree
+    solid: PartSolid
 
     @staticmethod
     def of(part: Part, obstacles: Obstacles = None, tolerance: Tolerance | None = None,
@@ -70,8 +74,9 @@ class ReachScene:
         """
         beside = faces_of(obstacles)
         faces = tuple(own for face in (*part.faces, *part.faces_of_held_side, *beside) for own in face.own_faces)
-        return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces,
-                          merge_reach_trees([cells(face) for face in faces]))
+        tree = merge_reach_trees([cells(face) for face in faces])
+        return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces, tree,
+                          PartSolid(_closed_bodies(part), tree))
 
     def required(self, face: Face, steps_count: bool = True) -> Array:
         """What tools that machine a face have to keep, (faces + 1, 4) mm.
@@ -124,6 +129,14 @@ class ReachScene:
     def _extent(self) -> float:
         """No two places are farther apart, mm."""
         return 2.0 * float(self.tree.shape[0, 10])
+
+
+def _closed_bodies(part: Part) -> tuple[tuple[Face, ...], ...]:
+    """The faces of the bodies of a part, where all of them bound volumes and no face is missing; else none."""
+    if part.left_out or not all(body.closed for body in part.bodies):
+        return ()
+    return tuple(tuple(own for number in sorted(set(body.faces)) for own in part.face(number).own_faces)
+                 for body in part.bodies if body.faces)
 
 
 def _highest_steps(mismatch: Mismatch) -> Array:
