@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 
+from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.face import Face
+from toolaxis.tolerances import Tolerance
+from toolaxis.tools.profile import Profile
 from toolaxis.verify.maps import surface_map
 from toolaxis.verify.material_removal import RestMaterial
-from toolaxis.verify.rays import border_points, default_spacing, face_rays, touching_spacing
+from toolaxis.verify.rays import border_points, default_spacing, face_rays, gouge_spacing
+from toolaxis.verify.task import VerificationTask
+from toolaxis.verify.verdict import judge
 
 
 def bump(trims=(), flip=False, height=12.0):
@@ -77,11 +82,11 @@ def test_spacing_is_half_a_millimetre_or_finer_on_small_faces():
 
 
 @pytest.mark.parametrize(("flat", "corner", "gouge"), [(0.0, 0.1, 0.01), (0.0, 1.0, 0.002), (1.5, 0.5, 0.01)])
-def test_a_gouge_on_a_face_that_is_only_touched_has_many_rays(flat, corner, gouge):
+def test_a_gouge_on_a_small_face_has_many_rays(flat, corner, gouge):
     """Torus that dips below a plane: what it takes off is an ellipse, wherever it lies and however it is turned."""
     side = np.linspace(0.0, 1.6, 4)
     face = Face.from_bspline(np.stack([*np.meshgrid(side, side, indexing="ij"), np.zeros((4, 4))], axis=-1))
-    spacing = touching_spacing(face, flat, corner, gouge)
+    spacing = gouge_spacing(face, flat, corner, gouge)
     assert default_spacing(face) < spacing < 0.5
     feet, rng = face_rays(face, spacing).point[:, :2], np.random.default_rng(4)
     half = np.sqrt(2 * gouge * np.array([flat + corner, corner]))
@@ -91,9 +96,26 @@ def test_a_gouge_on_a_face_that_is_only_touched_has_many_rays(flat, corner, goug
         assert (((along / half) ** 2).sum(axis=1) < 1.0).sum() >= 25
 
 
-def test_rays_of_large_faces_stay_where_a_cutter_only_touches():
+def test_rays_for_gouges_are_no_farther_apart_on_large_faces():
     face = Face.from_bspline(40 * bump(height=0.0).surface.control[..., :3])
-    assert touching_spacing(face, 0.0, 0.1, 0.01) == default_spacing(face)
+    assert gouge_spacing(face, 0.0, 0.1, 0.01) == default_spacing(face)
+
+
+@pytest.mark.parametrize("depth", [0.0098, 0.0103])
+def test_a_gouge_on_a_small_face_beside_the_machined_one_is_found(depth):
+    """A ball of 0.2 mm dips into a face of 1.6 x 1.6 mm at one place after the other."""
+    side = np.linspace(0.0, 1.6, 4)
+    x, y = np.meshgrid(side, side, indexing="ij")
+    machined, beside = (Face.from_bspline(np.stack([x + shift, y, 0 * x], axis=-1)).trimmed((), label)
+                        for shift, label in ((-1.6, "machined"), (0.0, "beside")))
+    for place in np.random.default_rng(8).uniform(0.2, 1.4, (8, 2)):
+        tips = np.array([[*place, -depth], [*place, -depth + 1e-4]])
+        task = VerificationTask("one", tips, np.tile([0.0, 0.0, 1.0], (2, 1)), np.full(2, Motion.CUT, dtype=np.int8),
+                                Profile(0.0, 0.1, 0.0, 20.0), (machined,), 0.02, left=(machined,), skin=(beside,),
+                                tolerance=Tolerance(gouge=0.01))
+        found = judge(task)
+        assert found.gouge_max == pytest.approx(depth, abs=2e-5)
+        assert found.passed == (depth < 0.01), found.reasons
 
 
 def test_share_of_area_and_histogram_of_a_known_height():

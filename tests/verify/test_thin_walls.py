@@ -66,16 +66,6 @@ def test_no_place_is_much_nearer_at_the_depth_that_is_told() -> None:
     assert (beyond < 1.05 * found * 0.9999).all()
 
 
-def test_what_is_enough_need_not_be_told_closely() -> None:
-    feet, normal = rays()
-    faces, deep = (plane(0.0), plane(-0.3)), np.full(len(feet), 4.0)
-    exact = depth_to_other_places(feet, normal, faces, deep)
-    enough = np.where(np.arange(len(feet)) % 2, 1.0, 0.1)
-    found = depth_to_other_places(feet, normal, faces, deep, enough)
-    assert (found[::2] == exact[::2]).all()
-    assert (found[1::2] >= exact[1::2]).all() and (found[1::2] <= 1.0).all()
-
-
 def test_far_faces_are_left_alone() -> None:
     feet, normal = rays()
     far = Face(PlanarSurface((0.0, 10.0), (0.0, 6.0)).nurbs())

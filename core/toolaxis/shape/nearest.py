@@ -73,10 +73,10 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
 
 
 class NearestSamples(NamedTuple):
-    """For n points the nearest of a face's samples, as those from which `nearest` sets out.
+    """The nearest sample of a face to n points.
 
-    Positions (n, 3), distances (n,), mm, and how far places of the face may lie from that sample without being nearer
-    to another one (n,), mm.
+    point : (n, 3) mm;  distance : (n,) mm;  apart : (n,) mm, how far from that sample the face may go on before another
+    sample is nearer.
     """
 
     point: Array
@@ -85,7 +85,7 @@ class NearestSamples(NamedTuple):
 
 
 def nearest_sample(face: Face, points: Array, samples: int = 96) -> NearestSamples:
-    """The nearest of a face's samples to each point: a place of the face that takes a tenth of the time of `nearest`.
+    """The nearest of a face's samples to each point, in about a tenth of the time that `nearest` takes.
 
     Parameters
     ----------

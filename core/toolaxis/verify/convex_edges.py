@@ -47,7 +47,7 @@ class End(NamedTuple):
 
 def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[tuple[Face, ...], tuple[Face, ...]],
                    cut: Callable[[Array, Array, Array], Array], allowed: float,
-                   others: Callable[[Array, Array, Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
+                   others: Callable[[Array, Array, Array], Array]) -> tuple[Array, NDArray[np.bool_]]:
     """How deep the cut lies below the part's surface, for rays of a face; the rays' own depth far from edges.
 
     Parameters
@@ -64,8 +64,7 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     allowed : float
         Depth that a gouge may have, mm.
     others : callable
-        How far rays with given feet, normals and depths may be followed until another place of the part is nearer, mm;
-        below the last of four it need not be told closely.
+        How far rays with given feet, normals and depths may be followed until another place of the part is nearer, mm.
 
     Returns
     -------
@@ -104,24 +103,17 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
 
 
 def _follow_to_other_places(rays: tuple[Array, Array], found: Array, cut: Callable[[Array, Array, Array], Array],
-                            allowed: float, others: Callable[[Array, Array, Array, Array], Array]) -> None:
-    """Lower the depths of rays beside an edge, (k, steps), that come nearer to another place of the part.
-
-    Only the deepest of a row counts: what falls below one that is not lowered need not be known closely.
-    """
+                            allowed: float, others: Callable[[Array, Array, Array], Array]) -> None:
+    """Lower the depths of rays beside an edge, (k, steps), that come nearer to another place of the part."""
     over = found > allowed
     if not over.any():
         return
-    counts = np.broadcast_to(np.where(over, 0.0, found).max(axis=1)[:, None], found.shape)[over]
     feet, directions, depth = rays[0][over], rays[1][over], found[over]
-    end = np.maximum(others(feet, directions, depth, counts), _LEAST)
+    end = np.maximum(others(feet, directions, depth), _LEAST)
     short = end < depth
     if not short.any():
         return
-    depth[short] = end[short]
-    seen = short & (end > counts)
-    if seen.any():
-        depth[seen] = cut(feet[seen], directions[seen], end[seen])
+    depth[short] = cut(feet[short], directions[short], end[short])
     found[over] = depth
 
 

@@ -68,12 +68,10 @@ class Depths:
     def _laid_bare(self, feet: Array, ways: Array, depth: Array) -> Array:
         return self.cut((feet + self.task.allowance * ways, ways), depth=np.minimum(depth, self.task.depth)).gouge
 
-    def _to_other_places(self, feet: Array, ways: Array, depth: Array, enough: Array | float = 0.0) -> Array:
-        """Depths of rays below the allowance, no deeper than to where another place of the part is nearer, mm; they
-        need not be told more closely than to lie below what is enough."""
+    def _to_other_places(self, feet: Array, ways: Array, depth: Array) -> Array:
+        """Depths of rays below the allowance, no deeper than to where another place of the part is nearer, mm."""
         allowance = self.task.allowance
-        below = depth_to_other_places(feet, ways, self._of_the_part(), np.maximum(depth - allowance, 0.0),
-                                      enough - allowance)
+        below = depth_to_other_places(feet, ways, self._of_the_part(), np.maximum(depth - allowance, 0.0))
         return np.where(below < depth - allowance, allowance + below, depth)
 
     def _in_walls(self, rays: tuple[Array, Array], left: RestMaterial, deep: NDArray[np.int64],

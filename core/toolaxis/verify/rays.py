@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 #: Greatest spacing of rays, mm, and how many a face may hold before it grows.
 SPACING, MOST_RAYS = 0.5, 400_000
 
-#: How many rays stand at least on what a cutter takes off deeper than a gouge may be, on a face that it only touches.
+#: How many rays stand on a gouge that is as deep as one may be, where nothing but gouges is looked for.
 _ON_GOUGE = 40
 
 #: Steps of the sequence that places a ray in its cell (Roberts' R2): with it no row of rays runs along a pass.
@@ -66,10 +66,10 @@ def default_spacing(face: Face) -> float:
     return max(min(SPACING, size / 150), size / sqrt(MOST_RAYS))
 
 
-def touching_spacing(face: Face, flat_radius: float, corner_radius: float, gouge: float) -> float:
-    """Spacing of rays for a face that a cutter only touches, where nothing but gouges is looked for, mm.
+def gouge_spacing(face: Face, flat_radius: float, corner_radius: float, gouge: float) -> float:
+    """Spacing of rays for a face on which nothing but gouges is looked for, mm.
 
-    On a small face `default_spacing` would lay many times as many rays as tell of any gouge.
+    Wider than `default_spacing` on small faces, where that lays many times as many rays as tell of any gouge.
 
     Parameters
     ----------

@@ -1,6 +1,7 @@
 """How far a ray may be followed inwards before another place of the part is nearer than its foot: in thin walls, and
 beside edges."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.face import Face
-from toolaxis.shape.nearest import nearest, nearest_sample
+from toolaxis.shape.nearest import NearestPoints, NearestSamples, nearest, nearest_sample
 
 Array = NDArray[np.float64]
 
@@ -20,8 +21,7 @@ _NEARER, _ROUNDING = 0.02, 1e-6
 _DENSE = 0.14
 
 
-def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], depth: Array,
-                          enough: Array | float = 0.0) -> Array:
+def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], depth: Array) -> Array:
     """How far rays may be followed inwards until another place of the part is nearer than their foot.
 
     What is cut beyond that depth lies below the other place, and is told there; behind a wall there is only air.
@@ -34,8 +34,6 @@ def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], d
         Of the part, the rays' own among them.
     depth : (m,) array
         Greatest depths, mm.
-    enough : (m,) array or float
-        Depths below which no ray need be told more closely, mm: it is left where it first falls below.
 
     Returns
     -------
@@ -49,16 +47,17 @@ def depth_to_other_places(foot: Array, normal: Array, faces: tuple[Face, ...], d
     medial axis point approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012),
     pp. 7-19, section 3.
     """
-    limit, enough = depth.copy(), np.broadcast_to(enough, depth.shape)
+    limit = depth.copy()
     for face in faces:
-        left, unsure = np.flatnonzero(limit > enough), []
+        left = np.arange(len(foot))
+        unsure = [left[:0]]
         while len(left):
-            found = _find_nearer_sample(face, foot, normal, limit, left)
+            found = _find_nearer(face, (foot, normal, limit), left, nearest_sample)
             unsure.append(found.unsure)
-            left = _shorten(limit, enough, (foot, normal), found)
-        left = np.concatenate(unsure) if unsure else left
+            left = _shorten(limit, (foot, normal), found)
+        left = np.concatenate(unsure)
         while len(left):
-            left = _shorten(limit, enough, (foot, normal), _find_nearer(face, foot, normal, limit, left))
+            left = _shorten(limit, (foot, normal), _find_nearer(face, (foot, normal, limit), left, nearest))
     return limit
 
 
@@ -71,38 +70,27 @@ class _Nearer(NamedTuple):
     unsure: NDArray[np.int64]
 
 
-def _shorten(limit: Array, enough: Array, rays: tuple[Array, Array], found: _Nearer) -> NDArray[np.int64]:
+def _find_nearer(face: Face, rays: tuple[Array, Array, Array], asked: NDArray[np.int64],
+                 search: Callable[[Face, Array], NearestPoints | NearestSamples]) -> _Nearer:
+    """Which of some rays, by feet, normals and depths, have a place of a face nearer to their ends than their feet."""
+    foot, normal, depth = (each[asked] for each in rays)
+    point, least = foot - depth[:, None] * normal, (1.0 - _NEARER) * depth - _ROUNDING
+    away = np.maximum(np.maximum(face.box[0] - point, point - face.box[1]), 0.0)
+    near = np.linalg.norm(away, axis=1) < least
+    rows, least = asked[near], least[near]
+    if not len(rows):
+        return _Nearer(rows, np.zeros((0, 3)), rows)
+    found = search(face, point[near])
+    nearer = found.distance < least
+    unsure = np.zeros(len(rows), dtype=bool)
+    if isinstance(found, NearestSamples):
+        coarse = found.apart > _DENSE * found.distance
+        unsure = ~nearer & coarse & (found.distance - found.apart < least)
+    return _Nearer(rows[nearer], found.point[nearer], rows[unsure])
+
+
+def _shorten(limit: Array, rays: tuple[Array, Array], found: _Nearer) -> NDArray[np.int64]:
     """Take depths back to where a ball through foot and nearer place has its middle; the rays to be asked again."""
     way = rays[0][found.ray] - found.place
     limit[found.ray] = 0.5 * dot(way, way) / dot(way, rays[1][found.ray])
-    return found.ray[limit[found.ray] > enough[found.ray]]
-
-
-def _find_nearer_sample(face: Face, foot: Array, normal: Array, depth: Array, asked: NDArray[np.int64]) -> _Nearer:
-    """Which of some rays, at their depths, have a sample of a face nearer than their feet."""
-    rows, point, least = _ask_near_box(face, foot, normal, depth, asked)
-    if not len(rows):
-        return _Nearer(rows, np.zeros((0, 3)), rows)
-    found = nearest_sample(face, point)
-    nearer = found.distance < least
-    coarse = ~nearer & (found.apart > _DENSE * found.distance)
-    return _Nearer(rows[nearer], found.point[nearer], rows[coarse & (found.distance - found.apart < least)])
-
-
-def _find_nearer(face: Face, foot: Array, normal: Array, depth: Array, asked: NDArray[np.int64]) -> _Nearer:
-    """Which of some rays, at their depths, have a place of a face nearer than their feet."""
-    rows, point, least = _ask_near_box(face, foot, normal, depth, asked)
-    if not len(rows):
-        return _Nearer(rows, np.zeros((0, 3)), rows)
-    found = nearest(face, point)
-    nearer = found.distance < least
-    return _Nearer(rows[nearer], found.point[nearer], rows[:0])
-
-
-def _ask_near_box(face: Face, foot: Array, normal: Array, depth: Array,
-                  asked: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array, Array]:
-    """Rays at whose depths the box of a face is nearer than counts, the places there, and the distances that count."""
-    point, least = foot[asked] - depth[asked, None] * normal[asked], (1.0 - _NEARER) * depth[asked] - _ROUNDING
-    away = np.maximum(np.maximum(face.box[0] - point, point - face.box[1]), 0.0)
-    near = np.linalg.norm(away, axis=1) < least
-    return asked[near], point[near], least[near]
+    return found.ray

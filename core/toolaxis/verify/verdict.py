@@ -24,7 +24,7 @@ from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surfac
 from toolaxis.verify.material_removal import Removal, RestMaterial
 from toolaxis.verify.pass_distances import FACTOR as STEP_OVER_FACTOR
 from toolaxis.verify.pass_distances import MeasuredFace, PassDistance, greatest_distance
-from toolaxis.verify.rays import touching_spacing
+from toolaxis.verify.rays import gouge_spacing
 from toolaxis.verify.revolved_solids import cutter_solid, frustum_solids
 from toolaxis.verify.seams import SMALLEST
 from toolaxis.verify.task import VerificationTask, motion_of, spot
@@ -243,7 +243,7 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
     left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
     targets = tuple(surface_map(face, partial(along, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
-    skin = tuple(_keep_touched(surface_map(face, partial(along, face), spacing or _touching_spacing(face, task),
+    skin = tuple(_keep_touched(surface_map(face, partial(along, face), spacing or _spacing_for_gouges(face, task),
                                            heights=False)) for face in task.skin)
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
@@ -253,8 +253,8 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
                                 _rooms_from_stock(task, threads, progress))
 
 
-def _touching_spacing(face: Face, task: VerificationTask) -> float:
-    return touching_spacing(face, task.profile.flat_radius, task.profile.corner_radius, task.tolerance.gouge)
+def _spacing_for_gouges(face: Face, task: VerificationTask) -> float:
+    return gouge_spacing(face, task.profile.flat_radius, task.profile.corner_radius, task.tolerance.gouge)
 
 
 def _keep_touched(one: SurfaceMap) -> tuple[SurfaceMap, int]:
