@@ -5,16 +5,22 @@ import re
 import subprocess
 import sys
 import time
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from toolaxis.cad import load
+from toolaxis.cad.build_part import part_from_record
 from toolaxis.cad.step import worker as transfer
 from toolaxis.cad.step.precheck import find_declared_unit, read_text
 from toolaxis.errors import InvalidInput, MissingBackend, ToolAxisError
+from toolaxis.shape.adjacency import gaps
 
 pytest.importorskip("OCP")
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -190,6 +196,21 @@ def test_damaged_geometry_is_warned_about(write, text, same_process):
         assert any("lie off their faces" in warning for warning in warnings)
     except InvalidInput as reason:
         assert "lost" in str(reason)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.99, 1.01, 2.0])
+def test_gaps_are_wide_from_a_thousandth_of_the_part_on(share):
+    """Of the part's true diagonal, whatever bound spares finding it."""
+    record = transfer.convert(str(ROOT / "examples" / "freeform.step"))[1].record
+    part = part_from_record(record)
+    assert not [text for text in part.warnings if "lie off their faces" in text]
+    border = record.borders[0]
+    across = np.cross(border.points[-1] - border.points[0], (0.3, 0.5, 0.8))
+    unit = replace(border, points=border.points + across / np.linalg.norm(across))
+    step = share * 1e-3 * part.diagonal / gaps(part.faces, [unit]).max()
+    moved = replace(border, points=border.points + step * across / np.linalg.norm(across))
+    told = part_from_record(replace(record, borders=[moved, *record.borders[1:]])).warnings
+    assert any("lie off their faces" in text for text in told) == (share > 1)
 
 
 def test_the_unit_is_told_by_the_text_too():

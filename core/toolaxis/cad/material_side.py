@@ -81,6 +81,8 @@ def _sides(first: int, beside: dict[int, list[tuple[int, bool]]], seen: dict[int
 
 def _few_of(by_number: dict[int, Face], side: dict[int, bool]) -> set[int]:
     """Of faces on two sides those on the one with little of the area; none where neither has."""
+    if len(set(side.values())) < 2:  # areas take as long as all else that is read in a part
+        return set()
     areas = [sum(by_number[number].area for number, on in side.items() if on == which) for which in (False, True)]
     lesser = areas[1] <= areas[0]
     if not 0 < min(areas) <= FEW * sum(areas):
