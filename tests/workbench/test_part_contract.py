@@ -16,9 +16,11 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / os.environ.get("TOOLAXIS_PREPARED", "out/freecad/part_contract")
-NAMES = sorted(path.stem for path in FOLDER.glob("*.pickle"))
+# Parts of many faces, of which the newer FreeCAD alone tells: what a release of the kernel may do otherwise shows on
+# each kind of surface and on what is left of the examples and of the parts by others.
+LARGE = {"blisk", "bosses", "impeller", "kj66_impeller", "mousecover"} if "TOOLAXIS_OLDER" in os.environ else set()
+NAMES = sorted({path.stem for path in FOLDER.glob("*.pickle")} - LARGE)
 EXAMPLES = {path.stem for path in (ROOT / "examples").glob("*.step")}
-PARTS = [name for name in NAMES if (FOLDER / f"{name}.step").exists()]
 EVERYTHING = pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
 
 
@@ -223,13 +225,14 @@ def test_a_face_that_is_only_a_mesh_is_named_as_such(prepared):
         shape_record(read(prepared / "mesh.brep"))
 
 
-@pytest.mark.parametrize("name", ["freeform", "axom_sliced_cylinder", "mousecover"])
-def test_a_step_file_is_read_by_freecad_where_there_is_no_other_kernel(prepared, name):
+@pytest.mark.parametrize("name", [name for name in ("freeform", "axom_sliced_cylinder", "mousecover")
+                                  if name not in LARGE], indirect=True)
+def test_a_step_file_is_read_by_freecad_where_there_is_no_other_kernel(name, prepared, record):
     """The same part as the file's shape, with the file's checksum and unit."""
     path = prepared / f"{name}.step"
     if not path.exists():
         pytest.skip(f"{name} is one of the parts by others: set TOOLAXIS_SHARED")
-    part, same = load(path), part_from_record(shape_record(read(path)))
+    part, same = load(path), part_from_record(record)
     assert (len(part.faces), part.bodies, len(part.edges)) == (len(same.faces), same.bodies, len(same.edges))
     assert all(np.array_equal(one.surface.control, other.surface.control)
                for one, other in zip(part.faces, same.faces, strict=True))
