@@ -232,7 +232,7 @@ def test_a_face_is_planned_in_regions_and_verified(sheet: Path, tmp_path: Path, 
     assert [op["label"] for op in document["operations"]] == ["1a", "1b"]
     assert all(op["region"] for op in document["operations"])
     assert main(["verify", str(out), "--no-pictures"]) == 0
-    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", UPRIGHT, "--faces=1,2", "--orientations=1",
+    assert main(["plan", str(sheet), "--tool=torus:8x1", "--scallop=0.1", UPRIGHT, "--faces=1,2", "--orientations=1",
                  "--no-pictures", "--out", str(out)]) == 0
     document = strict((out / "plan.json").read_text())
     assert {op["face"] for op in document["operations"]} == {1, 2}
