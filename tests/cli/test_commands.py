@@ -7,17 +7,20 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
+from math import radians
 from pathlib import Path
 
 import pytest
 
 from toolaxis.cli.main import main
 from toolaxis.errors import Cancelled
+from toolaxis.search.sectors import sectors
 
 Capture = pytest.CaptureFixture[str]
 FAST = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
 #: Few axes to choose from, where each costs a search of its own.
-UPRIGHT = "--limits=cone:0,0,1,12"
+UPRIGHT = "--limits=cone:0,0,1,8"
 
 
 def strict(text: str) -> dict:
@@ -130,6 +133,7 @@ def test_plan_prints_json_on_stdout_alone(sheet: Path, tmp_path: Path, capsys: C
 def test_other_methods_stand_beside_the_plan(sheet: Path, tmp_path: Path, capsys: Capture,
                                              monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("toolaxis.job.planning.comparison.BY_SUB_SURFACE", ("roman",))
+    monkeypatch.setattr("toolaxis.strategies.indexed.pictures.sectors", partial(sectors, roll=radians(60)))
     out = tmp_path / "out"
     assert main(["plan", str(sheet), *FAST, "--faces=1", "--compare", "--feedrate=600", "--rapid=6000",
                  "--out", str(out)]) == 0
@@ -228,7 +232,7 @@ def test_a_face_is_planned_in_regions_and_verified(sheet: Path, tmp_path: Path, 
     assert [op["label"] for op in document["operations"]] == ["1a", "1b"]
     assert all(op["region"] for op in document["operations"])
     assert main(["verify", str(out), "--no-pictures"]) == 0
-    assert main(["plan", str(sheet), "--tool=torus:4x1", "--scallop=0.1", UPRIGHT, "--faces=1,2", "--orientations=1",
+    assert main(["plan", str(sheet), "--tool=torus:8x1", "--scallop=0.1", UPRIGHT, "--faces=1,2", "--orientations=1",
                  "--no-pictures", "--out", str(out)]) == 0
     document = strict((out / "plan.json").read_text())
     assert {op["face"] for op in document["operations"]} == {1, 2}

@@ -3,6 +3,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -239,11 +240,12 @@ def two_sheets() -> Part:
     return Part.from_faces([sheet, moved, wall])
 
 
-def stopped_at(words: str, part: Part | None = None) -> Plan:
-    """A plan that is stopped at the first report in which there are some words."""
+@cache
+def stopped_at(words: str) -> Plan:
+    """A plan of two sheets that is stopped at the first report in which there are some words."""
     seen: list[str] = []
     stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any(words in one for one in seen))
-    return ta.plan(part or two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1, progress=stopping)
+    return ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1, progress=stopping)
 
 
 def whole_area(plan: Plan) -> float:
@@ -255,9 +257,9 @@ def whole_area(plan: Plan) -> float:
                                           ("Ball D3", 2)])
 def test_a_stopped_plan_tells_of_every_face(words: str, begun: int) -> None:
     """Found: its areas were those of the faces that were begun, a tenth of the part looked like all of it."""
-    part = two_sheets()
+    made = stopped_at(words)
+    part = made.part
     areas_of_both = part.face(1).area + part.face(2).area
-    made = stopped_at(words, part)
     assert made.outcome == "cancelled" and len(made.operations) == begun and all(op.done for op in made.operations)
     found = made.account
     assert found.area == pytest.approx(areas_of_both, rel=1e-9) == whole_area(made)

@@ -129,6 +129,20 @@ def test_what_was_divided_for_one_axis_is_there_for_the_next(monkeypatch):
         assert all(np.array_equal(a, b) for a, b in zip(same, every[0], strict=True))
 
 
+def test_a_limit_that_no_angle_can_be_beyond_needs_no_smaller_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: a ball end allows 0 between axis and normal, and whether less is met cost half of a plan's time."""
+    face = bumpy(3, height=0.5)
+    field, counts, looked = NormalField(face), list[int](), NormalCells._looked
+    monkeypatch.setattr(NormalCells, "_looked", lambda self, rect, *rest: counts.append(len(rect)) or
+                        looked(self, rect, *rest))
+    axis = face.normal(np.array([[0.47, 0.53]]))[0]
+    found = field.range_of_angles(axis, 0.0, pi / 2)
+    assert counts == [24 * 24], "the first grid of cells alone"
+    assert found.low == 0.0 and found.high >= angle_between(face.normal(face.grid(99, 99)), axis).max()
+    assert field.range_of_angles(-axis, pi / 2, pi).high == pi and len(counts) == 1
+    assert field.range_of_angles(axis, 1e-6, pi / 2).low < 1e-3 and len(counts) > 1
+
+
 def test_a_fold_of_vanishing_size_adds_no_normals() -> None:
     """A plane face that runs back on itself by 0.0003 mm: the derivatives alone turn by half a turn there."""
     line = np.concatenate([np.linspace(0.0, 30.0, 7), 30.0 - 5e-5 * np.arange(1, 6), np.linspace(35.0, 60.0, 6)])

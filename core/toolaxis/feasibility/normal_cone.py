@@ -141,18 +141,20 @@ class NormalField:
                     i = own[best(angle[own])]
                     if (angle[i] - seen[k]) * (1 if k else -1) > 0:
                         seen[k], where[k] = float(angle[i]), cells.middle[i]
-            doubtful = ((angle - spread < min(least, seen[0])) & (seen[0] >= least)) | (
-                (angle + spread > max(greatest, seen[1])) & (seen[1] <= greatest))
+            # No angle is below 0 or above pi: a limit there, as that of a ball end, needs no smaller cells.
+            lower, upper = np.maximum(angle - spread, 0.0), np.minimum(angle + spread, pi)
+            doubtful = ((lower < min(least, seen[0])) & (seen[0] >= least)) | (
+                (upper > max(greatest, seen[1])) & (seen[1] <= greatest))
             doubtful &= (spread > _FINE) & (rounds < _ROUNDS)
             doubtful &= np.count_nonzero(doubtful) <= _MOST
-            low = min(low, float((angle - spread)[~doubtful].min(initial=np.inf)))
-            high = max(high, float((angle + spread)[~doubtful].max(initial=-np.inf)))
+            low = min(low, float(lower[~doubtful].min(initial=np.inf)))
+            high = max(high, float(upper[~doubtful].max(initial=-np.inf)))
             if not doubtful.any():
                 break
             kept, cells = self._cells.below(None if kept is None else kept[doubtful], cells.chosen(doubtful))
             if not len(cells.rect):
                 break
-        return Range(max(low, 0.0), min(high, pi), where[0], where[1])
+        return Range(low, high, where[0], where[1])
 
     def _range_over_members(self, axis: Array, least: float, greatest: float) -> Range:
         surface = self.face.surface
