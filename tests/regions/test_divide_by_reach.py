@@ -9,9 +9,13 @@ import toolaxis as ta
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.job.planning.sub_surfaces import by_reach, shrink_refused
+from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.regions.divide_by_reach import ReachDivision, _parts, divide_by_reach
+from toolaxis.regions.cells import FaceCells, screening_axes
+from toolaxis.regions.divide_by_reach import _ROOM, ReachDivision, _parts, _Reach, _shrink, divide_by_reach
+from toolaxis.regions.prices import fits_hollows
+from toolaxis.regions.reach_screen import screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.shape.face import Face
@@ -136,3 +140,20 @@ def test_a_hole_of_no_area_is_no_hole_of_the_rest():
     nothing = np.array([[3.0, 1.0], [3.0, 2.0], [3.0, 3.0]])
     assert [len(part) for part in _parts((square, hole, nothing))] == [2]
 
+
+def test_cells_that_are_not_screened_are_those_that_are_left_out_anyway(scenes) -> None:
+    wall = scenes.plate([[-20, 10, 0], [-20, 10, 30], [20, 10, 0], [20, 10, 30]])
+    part, tool = Part.from_faces([vault(), wall]), load_tool("ball:8")
+    cells, scene = FaceCells.of(part.faces[0], 2.0), ReachScene.of(part)
+    axes = screening_axes([cells])[::3]
+    free = screen_reach(cells, [tool], axes, scene)[0] & fits_hollows(cells, tool, axes, 0.05)
+    roomy = angle_between(axes[:, None], cells.normal[None]) <= np.pi / 2 - _ROOM
+    reach = _Reach(cells, tool, scene, 0.05, 1.0)
+    reach.screen(axes)
+    assert np.array_equal(reach.reached, free & roomy) and (free & ~roomy).any() and (free & roomy).any()
+    # what there is little room for is nothing in the way: no cell beside it is left out
+    edged = _Reach(cells, tool, scene, 0.05, 1.0, edges=1)
+    edged.screen(axes)
+    beside = np.array([_shrink(edged, one, there, 1) for one, there in
+                       zip(free & roomy, seen_cells(cells, tool, axes, scene.tolerance) & ~free, strict=True)])
+    assert np.array_equal(edged.reached, beside) and (beside != free & roomy).any()

@@ -12,8 +12,9 @@ from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.partition.uv_grid import Lattice
+from toolaxis.regions import reach_screen
 from toolaxis.regions.cells import FaceCells, screening_axes
-from toolaxis.regions.reach_screen import screen_reach, seen_cells
+from toolaxis.regions.reach_screen import ReachScreen, screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
@@ -253,3 +254,34 @@ def test_no_tools_and_no_axes_are_no_answers(scenes) -> None:
     cells, scene = FaceCells.of(part.faces[0], 4.0), ReachScene.of(part)
     assert screen_reach(cells, [], [UP], scene).shape == (0, 1, len(cells))
     assert screen_reach(cells, scenes.rack()[:2], np.empty((0, 3)), scene).shape == (2, 0, len(cells))
+
+
+def test_a_screen_that_is_asked_again_answers_as_one_made_anew(scenes, monkeypatch) -> None:
+    part, tools = scenes.pocket(), scenes.rack()
+    cells, scene = FaceCells.of(part.faces[0], 2.0), ReachScene.of(part)
+    axes = screening_axes([cells])[::7]
+    fresh = screen_reach(cells, tools, axes, scene)
+    looked, required = [], ReachScene.required
+    monkeypatch.setattr(ReachScene, "required", lambda *some: looked.append(some) or required(*some))
+    screen = ReachScreen(cells, scene)
+    for number in (2, 0, 5, 2, 6):  # other corners before, between and behind
+        assert np.array_equal(screen.screen([tools[number]], axes)[0], fresh[number])
+    some = np.random.default_rng(4).permutation(len(cells))[::3]
+    assert np.array_equal(screen.pick(some).screen(tools, axes), fresh[:, :, some])
+    assert len(looked) == 1 and 0.02 < fresh.mean() < 0.98
+
+
+def test_only_what_is_asked_for_is_answered_and_as_without_asking(scenes, monkeypatch) -> None:
+    part, tools = scenes.pocket(), scenes.rack()[:5]
+    cells, scene = FaceCells.of(part.faces[0], 2.0), ReachScene.of(part)
+    axes = screening_axes([cells])[::7]
+    whole = screen_reach(cells, tools, axes, scene)
+    asked = np.random.default_rng(4).random(whole.shape) < 0.5
+    looked, find = [], reach_screen.find_blocked
+    monkeypatch.setattr(reach_screen, "find_blocked", lambda *some: looked.append(len(some[2])) or find(*some))
+    found = ReachScreen(cells, scene).screen(tools, axes, asked)
+    assert np.array_equal(found, whole & asked) and (whole & ~asked).any()
+    half = sum(looked)
+    looked.clear()
+    screen_reach(cells, tools, axes, scene)
+    assert half < 0.6 * sum(looked)

@@ -20,7 +20,7 @@ from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import fits_hollows
-from toolaxis.regions.reach_screen import screen_reach, seen_cells
+from toolaxis.regions.reach_screen import ReachScreen, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.direction_grid import ring
 from toolaxis.search.face_problem import FaceProblem
@@ -187,6 +187,7 @@ class _Reach:
                  edges: int = 0) -> None:
         self.cells, self.tool, self.scene, self.scallop, self.least = cells, tool, scene, scallop, least
         self._edges = edges
+        self._screen = ReachScreen(cells, scene)
         self._place = tuple(cells.index.T)
         self.axes = np.empty((0, 3))
         #: What each axis reaches, (k, n).
@@ -197,19 +198,33 @@ class _Reach:
     def screen(self, axes: Array) -> range:
         """Look at axes; their numbers."""
         cells, before = self.cells, len(self.axes)
-        free = screen_reach(cells, [self.tool], axes, self.scene)[0]
-        free &= fits_hollows(cells, self.tool, axes, self.scallop, self.scene.allowance)
-        seen = seen_cells(cells, self.tool, axes, self.scene.tolerance)
         angle = np.asarray(angle_between(axes[:, None], cells.normal[None]))
         roomy = angle <= np.pi / 2 - self.tool.half_angle - _ROOM
+        asked = fits_hollows(cells, self.tool, axes, self.scallop, self.scene.allowance)
+        if not self._edges:  # only with edges it counts what stands in the way where there is little room
+            asked &= roomy
+        free = self._screen.screen([self.tool], axes, asked[None])[0]
         reached = free & roomy
         if self._edges:
+            seen = seen_cells(cells, self.tool, axes, self.scene.tolerance)
             reached = np.array([_shrink(self, one, there, self._edges)
                                 for one, there in zip(reached, seen & ~free, strict=True)]).reshape(reached.shape)
         self.axes = np.concatenate([self.axes, axes])
         self.reached = np.concatenate([self.reached, reached])
         self.depth = np.concatenate([self.depth, *(self._depth(one)[None] for one in reached)])
         return range(before, len(self.axes))
+
+    def area_free(self, rows: Indices, axes: Array) -> Array:
+        """Area of some cells at which the tool may stand under axes, hollow or not, (k,) mm^2.
+
+        Parameters
+        ----------
+        rows : (m,) array of int
+            The cells.
+        axes : (k, 3) array
+        """
+        some = self._screen.pick(rows)
+        return np.asarray(some.screen([self.tool], axes)[0] @ some.cells.area)
 
     def _depth(self, reached: Bools) -> NDArray[np.float32]:
         from scipy.ndimage import distance_transform_edt
@@ -316,8 +331,7 @@ class _Cover:
             left = np.flatnonzero(reach.assign(numbers) < 0)
             if self._area[left].sum() < _PRICE * reach.least:
                 break
-            some = reach.cells.pick(left[::1 + len(left) // _COARSE])
-            gain = screen_reach(some, [reach.tool], axes, reach.scene)[0] @ some.area
+            gain = reach.area_free(left[::1 + len(left) // _COARSE], axes)
             best = np.argsort(-gain, kind="stable")[:_FILLED]
             longer = max(([*numbers, new] for new in reach.screen(axes[best])), key=self._worth)
             if self._worth(longer) <= self._worth(numbers):

@@ -4,6 +4,7 @@ What it says is for choosing; the search and the proof of the passes decide.
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 from math import pi
 
 import numpy as np
@@ -30,8 +31,77 @@ _BLOCK = 4
 _HALF = 1.0001
 
 
+class ReachScreen:
+    """The screening of cells; what all tools and axes share is found once.
+
+    Parameters
+    ----------
+    cells : FaceCells
+        Of a face of the scene's part, or of a piece of one.
+    scene : ReachScene
+    """
+
+    def __init__(self, cells: FaceCells, scene: ReachScene) -> None:
+        self.cells, self.scene = cells, scene
+        #: By corner radius, where the ball of a corner fits, (n,).
+        self._corners: dict[float, Bools] = {}
+
+    @cached_property
+    def _required(self) -> Array:
+        """What tools have to keep, (faces + 1, 4) mm."""
+        return self.scene.required(self.cells.face)
+
+    def pick(self, rows: Indices) -> "ReachScreen":
+        """The screening of some of the cells.
+
+        Parameters
+        ----------
+        rows : (m,) array of int
+        """
+        made = ReachScreen(self.cells.pick(rows), self.scene)
+        made.__dict__["_required"] = self._required
+        made._corners = {radius: fits[rows] for radius, fits in self._corners.items()}
+        return made
+
+    def screen(self, tools: Sequence[Tool], axes: ArrayLike, among: Bools | None = None) -> Bools:
+        """Whether tools may stand at the contacts of the cells, as `screen_reach`.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+        axes : (k, 3) array_like
+            Tool axes, tip to spindle.
+        among : (tools, k, n) array of bool, optional
+            What is asked for; all else is answered with False, and not looked at.
+
+        Returns
+        -------
+        (tools, k, n) array of bool
+        """
+        cells, scene = self.cells, self.scene
+        rows = np.asarray(unit(as_rows(axes, 3, "axes")))
+        found = np.zeros((len(tools), len(rows), len(cells)), dtype=bool)
+        if not len(cells):
+            return found
+        allowed = np.ones(len(rows), dtype=bool) if scene.limits is None else np.asarray(scene.limits.allowed(rows))
+        for number, tool in enumerate(tools):
+            seen = seen_cells(cells, tool, rows, scene.tolerance) & self._corner_fits(tool) & allowed[:, None]
+            if among is not None:
+                seen &= among[number]
+            axis, cell = _side_by_side(cells, seen)
+            found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, self._required))
+        return found
+
+    def _corner_fits(self, tool: Tool) -> Bools:
+        """Whether the ball of a tool's corner, held at its contact under any axis, keeps off everything, (n,)."""
+        radius = tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
+        if radius not in self._corners:
+            self._corners[radius] = _ball_fits(self.cells, radius, self.scene, self._required)
+        return self._corners[radius]
+
+
 def screen_reach(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scene: ReachScene) -> Bools:
-    """Whether tools may stand at the contacts of cells.
+    """Whether tools may stand at the contacts of cells; where the same cells are asked again, see `ReachScreen`.
 
     Parameters
     ----------
@@ -56,21 +126,7 @@ def screen_reach(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scene
     **Properties**: 1. moving part and axes together changes nothing; 2. a tool inside a larger one
     reaches all that the larger one does.
     """
-    rows = np.asarray(unit(as_rows(axes, 3, "axes")))
-    found = np.zeros((len(tools), len(rows), len(cells)), dtype=bool)
-    if not len(cells):
-        return found
-    required = scene.required(cells.face)
-    allowed = np.ones(len(rows), dtype=bool) if scene.limits is None else np.asarray(scene.limits.allowed(rows))
-    corners: dict[float, Bools] = {}
-    for number, tool in enumerate(tools):
-        radius = tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
-        if radius not in corners:
-            corners[radius] = _corner_fits(cells, radius, scene, required)
-        seen = seen_cells(cells, tool, rows, scene.tolerance) & corners[radius] & allowed[:, None]
-        axis, cell = _side_by_side(cells, seen)
-        found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, required))
-    return found
+    return ReachScreen(cells, scene).screen(tools, axes)
 
 
 def seen_cells(cells: FaceCells, tool: Tool, axes: Array, tolerance: Tolerance) -> Bools:
@@ -93,7 +149,7 @@ def seen_cells(cells: FaceCells, tool: Tool, axes: Array, tolerance: Tolerance) 
     return np.asarray(seen)
 
 
-def _corner_fits(cells: FaceCells, radius: float, scene: ReachScene, required: Array) -> Bools:
+def _ball_fits(cells: FaceCells, radius: float, scene: ReachScene, required: Array) -> Bools:
     """Whether the ball that any cutter of a corner radius holds at its contact keeps off everything, (n,)."""
     if radius <= 0:
         return np.ones(len(cells), dtype=bool)

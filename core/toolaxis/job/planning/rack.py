@@ -23,7 +23,7 @@ from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import widths
-from toolaxis.regions.reach_screen import screen_reach
+from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
 from toolaxis.shape.face import Face
@@ -455,10 +455,9 @@ class _Screen:
         if not len(axes) or not len(cells):
             return FacePrices(np.full((len(jobs), len(axes), len(cells)), np.inf), cells.area), facing
         scene = replace(self._scene, allowance=inputs.allowance_of(face))
-        reached = screen_reach(cells, tools, axes, scene)
         wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
-        held = reached & (wide > 0)
+        held = ReachScreen(cells, scene).screen(tools, axes, wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         return FacePrices(seconds, cells.area), facing
 
