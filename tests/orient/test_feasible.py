@@ -1,10 +1,12 @@
 """Feasibility: reasons and amounts against dense points, walls, and the proof form between samples."""
 
 from math import radians
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import toolaxis as ta
 from toolaxis.contact.placement import place
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.feasibility import Feasibility
@@ -16,6 +18,8 @@ from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.search.direction_grid import spiral
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 TOOL = Tool.torus(8, 1)
 HELD = Tool.torus(8, 1, stickout=30, holder=[(12, 0), (12, 30)])
@@ -132,6 +136,22 @@ def test_groups_sort_faces_by_their_edges(make):
     assert groups[1].faces[0].number == 3
     np.testing.assert_allclose(groups[0].required, [-0.01, 0.5, 1.0])
     np.testing.assert_allclose(groups[2].required, [0.1, 0.5, 1.0])
+
+
+@pytest.mark.parametrize("name", ["blisk", "bosses"])
+def test_faces_that_meet_the_skin_at_a_corner_alone_may_be_touched_too(name):
+    pytest.importorskip("OCP")
+    part = ta.load(EXAMPLES / f"{name}.step")
+    for face in part.sculptured[:6]:
+        skin = {own.number for own in part.skin(face.number)}
+        corners = [point for edge in part.edges if skin & set(edge.faces) for point in edge.polyline[[0, -1]]]
+        met = {own for edge in part.edges for own in edge.faces
+               if any(np.linalg.norm(end - point) <= 1e-6 * part.diagonal
+                      for end in edge.polyline[[0, -1]] for point in corners)}
+        walls = {number for own in skin for number in part.neighbours(own, "concave")}
+        groups = group_surroundings(face, Tolerance(), part=part)
+        found = {own.number for group in groups if group.role == TOUCHING for own in group.faces}
+        assert found == met - walls - skin
 
 
 def test_obstacles_must_be_faces(make):

@@ -285,3 +285,30 @@ def test_only_what_is_asked_for_is_answered_and_as_without_asking(scenes, monkey
     looked.clear()
     screen_reach(cells, tools, axes, scene)
     assert half < 0.6 * sum(looked)
+
+
+@pytest.mark.parametrize("size", [1.0, 2.5])
+def test_the_promising_axes_of_a_tool_are_screened_whole_and_others_for_what_these_miss(scenes, size: float) -> None:
+    part = scenes.pocket()
+    cells, tools, scene = FaceCells.of(part.faces[0], size), scenes.rack(), ReachScene.of(part)
+    axes = screening_axes([cells])
+    among = np.random.default_rng(7).random((len(tools), len(axes), len(cells))) < 0.95
+    whole = screen_reach(cells, tools, axes, scene) & among
+    promising = ReachScreen(cells, scene).screen_promising(tools, axes, among)
+    assert not (promising & ~whole).any()
+    assert np.array_equal(promising.any(axis=1), whole.any(axis=1))
+    assert promising.sum() < 0.8 * whole.sum()
+    area, some = whole @ cells.area, promising @ cells.area
+    for number in range(len(tools)):
+        assert some[number].max() >= 0.99 * area[number].max()
+        held = some[number] == area[number]  # these were screened whole
+        assert held.any() and some[number, held].max() == some[number].max()
+
+
+def test_few_cells_are_screened_whole(scenes) -> None:
+    part = scenes.pocket()
+    cells, tools, scene = FaceCells.of(part.faces[0], 1.0).pick(np.arange(9)), scenes.rack()[:3], ReachScene.of(part)
+    axes = screening_axes([cells])
+    among = np.ones((3, len(axes), len(cells)), dtype=bool)
+    found = ReachScreen(cells, scene).screen_promising(tools, axes, among)
+    assert np.array_equal(found, screen_reach(cells, tools, axes, scene))

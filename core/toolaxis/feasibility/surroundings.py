@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from toolaxis.errors import InvalidInput
 from toolaxis.shape.allowances import SAME
@@ -220,16 +221,10 @@ def _harmless(part: Part, number: int) -> set[int]:
     skin = {face.number for face in part.skin(number)}
     walls = {n for own in skin for n in part.neighbours(own, "concave")}
     convex = {n for own in skin for n in part.neighbours(own, "convex")}
-    corners = _corners(part, skin)
-    if len(corners):
-        for edge in part.edges_to_touch:
-            ends = edge.polyline[[0, -1]]
-            apart = np.linalg.norm(ends[:, None] - corners[None], axis=2).min()
-            if apart <= 1e-6 * part.diagonal:
-                convex |= set(edge.faces)
+    edges, ends = part.edges_to_touch, part.ends_to_touch
+    of_skin = np.array([not skin.isdisjoint(edge.faces) for edge in edges], dtype=bool)
+    if of_skin.any():
+        apart, _ = cKDTree(ends[of_skin].reshape(-1, 3)).query(ends)
+        for k in np.flatnonzero(apart.min(axis=1) <= 1e-6 * part.diagonal):
+            convex |= set(edges[k].faces)
     return convex - walls - skin
-
-
-def _corners(part: Part, skin: set[int]) -> Array:
-    ends = [edge.polyline[[0, -1]] for edge in part.edges_to_touch if skin & set(edge.faces)]
-    return np.concatenate(ends) if ends else np.empty((0, 3))

@@ -58,7 +58,7 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     return piece[order], along[order]
 
 
-def rises(chart: Chart, cut: Cut, steps: Array, piece: Index, along: Array) -> Array:
+def rises(chart: Chart, cut: Cut, steps: Array, points: tuple[Index, Array], tip: Array) -> Array:
     """How deep points are set so that no straight motion between them stays above the pass, (n,) mm.
 
     Between two points on a hollow stretch a straight motion stays above the pass by what `follow` allows, and would
@@ -72,40 +72,35 @@ def rises(chart: Chart, cut: Cut, steps: Array, piece: Index, along: Array) -> A
     cut : Cut
     steps : (n,) array
         Step of the pass that each point belongs to.
-    piece : (n,) array of int
-        Its piece.
-    along : (n,) array
-        Sorted by piece, then increasing, see `follow`.
+    points : (n,) array of int, (n,) array
+        Pieces and values of the along parameter, from `follow`.
+    tip : (n, 3) array
+        Tips there, mm.
     """
+    piece, along = points
     deeper = np.zeros(len(along))
     first = np.flatnonzero(piece[1:] == piece[:-1])
     if not len(first):
         return deeper
     above = in_blocks(lambda *gaps: _heights_over(chart, cut, *gaps), along[first], along[first + 1], steps[first],
-                      size=_GAPS)
+                      tip[first], tip[first + 1], size=_GAPS)
     for end in (first, first + 1):
         np.maximum.at(deeper, end, above)
     return deeper
 
 
-def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
-    """How far straight motions from low to high stay above the pass at most, (m,) mm."""
-    places = np.concatenate([[0.0], _PROBES, [1.0]])
-    along = (low[:, None] + (high - low)[:, None] * places).ravel()
-    steps = np.repeat(step, len(places))
-    contact, tip, normal = tip_points(chart, cut, along, steps)
-    axes = cut.axes(chart.face, chart.uv(along, steps))
-    shape = (len(low), len(places), 3)
-    axes = np.broadcast_to(axes, contact.shape).reshape(shape)
-    point, up = (part.reshape(shape)[:, 1:-1].reshape(-1, 3) for part in (contact, normal))
-    between, leaning = (_between(part.reshape(shape)).reshape(-1, 3) for part in (tip, axes))
-    touching = tips(point, up, unit(leaning), cut.tool, cut.allowance)
-    return np.asarray(((between - touching) * up).sum(axis=1).reshape(len(low), -1).max(axis=1))
+def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array, begin: Array, end: Array) -> Array:
+    """How far straight motions of the tip from begin to end, at low and high, stay above the pass at most, (m,) mm."""
+    along = (low[:, None] + (high - low)[:, None] * _PROBES).ravel()
+    contact, _, normal = tip_points(chart, cut, along, np.repeat(step, len(_PROBES)))
+    first, last = (np.broadcast_to(cut.axes(chart.face, chart.uv(place, step)), begin.shape) for place in (low, high))
+    touching = tips(contact, normal, unit(_between(first, last)), cut.tool, cut.allowance)
+    return np.asarray(((_between(begin, end) - touching) * normal).sum(axis=1).reshape(len(low), -1).max(axis=1))
 
 
-def _between(rows: Array) -> Array:
-    """Places of straight motions from the first to the last of (m, k, 3) rows, (m, k - 2, 3)."""
-    return np.asarray(rows[:, :1] + (rows[:, -1:] - rows[:, :1]) * _PROBES[:, None])
+def _between(begin: Array, end: Array) -> Array:
+    """Places of straight motions from begin (m, 3) to end, one motion after the other, (m k, 3)."""
+    return np.asarray(begin[:, None] + (end - begin)[:, None] * _PROBES[:, None]).reshape(-1, 3)
 
 
 def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:

@@ -67,7 +67,7 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     piece, along = follow(chart, cut, layout.pieces, chord)
     steps = layout.pieces[piece, 2]
     contact, tip, normal = tip_points(chart, cut, along, steps)
-    tip = tip - rises(chart, cut, steps, piece, along)[:, None] * normal
+    tip = tip - rises(chart, cut, steps, (piece, along), tip)[:, None] * normal
     bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
     strokes = [CuttingMove(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
     return link(_order_moves(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))

@@ -27,6 +27,9 @@ Indices = NDArray[np.int64]
 _AT_ONCE = 4096
 #: Cells along the sides of the blocks that are looked at together.
 _BLOCK = 4
+#: Axes under which a tool reaches less than this share of what it reaches under the best one are passed over where
+#: other axes reach a cell; how many cells have to tell which axes those are.
+_PROMISING, _FEWEST = 0.7, 12
 #: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
 _HALF = 1.0001
 
@@ -91,6 +94,47 @@ class ReachScreen:
             axis, cell = _side_by_side(cells, seen)
             found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, self._required))
         return found
+
+    def screen_promising(self, tools: Sequence[Tool], axes: ArrayLike, among: Bools) -> Bools:
+        """What `screen` says, of all cells for the axes under which a tool reaches most, and under others only of cells
+        that the tool reaches under none of those.
+
+        Parameters
+        ----------
+        tools : sequence of Tool
+        axes : (k, 3) array_like
+        among : (tools, k, n) array of bool
+            As for `screen`.
+
+        Returns
+        -------
+        (tools, k, n) array of bool
+
+        Notes
+        -----
+        A quarter of the cells tells which axes those are: all that reach nearly as much of it as the best one.
+
+        **Properties**: 1. never true where `screen` is not; 2. each tool reaches the same cells under any axis.
+        """
+        rows = np.asarray(unit(as_rows(axes, 3, "axes")))
+        quarter = (self.cells.index % 2 == 0).all(axis=1)
+        if quarter.sum() < _FEWEST:
+            return self.screen(tools, rows, among)
+        some, others = np.flatnonzero(quarter), np.flatnonzero(~quarter)
+        found = np.zeros((len(tools), len(rows), len(self.cells)), dtype=bool)
+        found[:, :, some] = self.pick(some).screen(tools, rows, among[:, :, some])
+        area = found @ self.cells.area
+        for number, tool in enumerate(tools):
+            promising = area[number] >= _PROMISING * area[number].max(initial=0.0)
+            self._add(found[number], tool, rows, among[number] & promising[:, None], others)
+            missed = others[~found[number].any(axis=0)[others]]
+            self._add(found[number], tool, rows, among[number] & ~promising[:, None], missed)
+        return found
+
+    def _add(self, found: Bools, tool: Tool, axes: Array, among: Bools, some: Indices) -> None:
+        """Enter what a tool reaches of some cells into (k, n)."""
+        if len(some):
+            found[:, some] |= self.pick(some).screen([tool], axes, among[None, :, some])[0]
 
     def _corner_fits(self, tool: Tool) -> Bools:
         """Whether the ball of a tool's corner, held at its contact under any axis, keeps off everything, (n,)."""

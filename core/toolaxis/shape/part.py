@@ -140,10 +140,15 @@ class Part:
     def _by_number(self) -> dict[int, Face]:
         return {face.number: face for face in self.faces}
 
-    @property
+    @cached_property
     def edges_to_touch(self) -> tuple[Edge, ...]:
         """The edges along which a tool may touch both faces: all but those of faces that are to be avoided."""
         return tuple(edge for edge in self.edges if not set(edge.faces) & set(self.avoided))
+
+    @cached_property
+    def ends_to_touch(self) -> Array:
+        """Both ends of each of `edges_to_touch`, (edges, 2, 3) mm."""
+        return np.array([edge.polyline[[0, -1]] for edge in self.edges_to_touch]).reshape(-1, 2, 3)
 
     @cached_property
     def _adjacent(self) -> dict[int, list[tuple[int, str]]]:

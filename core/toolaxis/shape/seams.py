@@ -157,13 +157,16 @@ def mismatch_of(faces: Sequence[Face], edges: Sequence[Edge], touched: Collectio
     The height of a piece is the lesser one of its two ends, so that it is not taken for greater than it is.
     """
     pieces: dict[int, list[Array]] = {}
+    asked = {face.number for face in faces}
     for edge in edges:
         if edge.kind not in _KINDS or not len(edge.step):
             continue
         for own, other in ((0, 1), (1, 0)):
+            if edge.faces[own] not in asked or edge.faces[other] not in touched:
+                continue
             height = np.minimum(edge.step[:-1, own], edge.step[1:, own])
             rows = (height >= SMALLEST) & (np.maximum(edge.step[:-1, own], edge.step[1:, own]) <= GREATEST)
-            if edge.faces[other] in touched and rows.any():
+            if rows.any():
                 ends = np.hstack([edge.polyline[:-1], edge.polyline[1:], height[:, None]])
                 pieces.setdefault(edge.faces[own], []).append(ends[rows])
     found = [np.concatenate(pieces.get(face.number, [np.empty((0, 7))])) for face in faces]

@@ -196,16 +196,15 @@ class RackPlanner:
                           in_pieces=one.in_pieces) for label, one in now.items()]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, progress)
-        stopped = made.outcome == "cancelled"
-        for op in made.operations:
-            origin = _origin(op.face, now)
-            try:
-                if not stopped:
-                    self._take_over(op, origin, tool)
-            except Cancelled:
-                stopped = True
-            if stopped:  # what is finished is kept; nothing goes to another tool any more
+        origins = [_origin(op.face, now) for op in made.operations]
+        rests = [_rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
+        following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
+        stopped = following is None
+        for k, (op, origin) in enumerate(zip(made.operations, origins, strict=True)):
+            if following is None:  # what is finished is kept; nothing goes to another tool any more
                 self._keep_last(op, origin, tool)
+            else:
+                self._take_over(op, origin, rests[k], following[k])
         if stopped:
             with activate_progress(NO_PROGRESS):  # areas are evaluated for it, whoever wants to stop
                 self._count_unfinished(now, made.operations)
@@ -249,31 +248,36 @@ class RackPlanner:
         step = self._steps[one.root.label]
         return f"{one.root.label}.{step}" if one.loops else one.root.label
 
-    def _take_over(self, op: Operation, origin: _Waiting, tool: int) -> None:
+    def _chains_for(self, rests: Sequence[Face | None], tool: int,
+                    progress: Progress) -> list[tuple[ToolChain, ...]] | None:
+        """What smaller tools may do of what one left, for each rest; None where the user stopped it."""
+        def _chains(k: int, inner: Progress) -> tuple[ToolChain, ...]:
+            inner.report("choice of tools", k, len(rests))
+            rest = rests[k]
+            if rest is None or rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
+                return ()
+            return self._screen.chains(rest, tool + 1)
+
+        found = abreast(_chains, len(rests), self.jobs[0].workers, progress)
+        if found.cancelled:
+            return None
+        # Where it fails, what was left stays open, as it is told of the operation that left it.
+        return [found.results.get(k, ()) for k in range(len(rests))]
+
+    def _take_over(self, op: Operation, origin: _Waiting, rest: Face | None, chains: Sequence[ToolChain]) -> None:
         """Keep an operation, and send what it leaves to the next tool."""
-        root, loops, left_by = origin.root, op.face.outline, origin.left_by
-        if op.done:
-            left_by = origin.left_by | {len(self._done)}
-            loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops)
-        following = None if op.failed or not loops else self._next_tool(root.trimmed(loops), tool)
+        following = self._best_of(chains)
         if op.done or following is None:
             self._left_by[len(self._done)] = origin.left_by
             self._done.append(op)
-        if following is not None:
-            self._waiting.append(_Waiting(root, loops, following.tools[0], left_by, _in_pieces(following),
-                                          self._screen.first_axis(following)))
+        if rest is not None and following is not None:
+            left_by = origin.left_by | {len(self._done) - 1} if op.done else origin.left_by
+            self._waiting.append(_Waiting(origin.root, rest.outline, following.tools[0], left_by,
+                                          _in_pieces(following), self._screen.first_axis(following)))
 
-    def _next_tool(self, rest: Face, tool: int) -> ToolChain | None:
+    def _best_of(self, chains: Sequence[ToolChain]) -> ToolChain | None:
         """The tools that finish what another one left; None where no smaller one reaches anything of it."""
-        if rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
-            return None
-        try:
-            chains = self._screen.chains(rest, tool + 1)
-        except Cancelled:
-            raise
-        except Exception:  # what was left stays open, as it is told of the operation that left it
-            return None
-        chains = tuple(one for one in chains if one.tools and set(one.tools) <= self._allowed)
+        chains = [one for one in chains if one.tools and set(one.tools) <= self._allowed]
         if not chains:
             return None
         best = min(chains, key=lambda one: one.cost + CHANGE_SECONDS * len(set(one.tools) - self._used))
@@ -373,6 +377,14 @@ def _rest_not_begun(one: _Waiting, area: float) -> UnplannedArea:
     return UnplannedArea(one.root.number, one.root.label, area, False, REST)
 
 
+def _rest_of(op: Operation, origin: _Waiting) -> Face | None:
+    """What an operation leaves for smaller tools; None where that is nothing."""
+    if op.failed:
+        return None
+    loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops) if op.done else op.face.outline
+    return origin.root.trimmed(loops) if loops else None
+
+
 def _in_pieces(chain: ToolChain) -> bool:
     """Whether the first tool of a chain reaches too little of a face under one axis to be asked for all of it."""
     return chain.first < WHOLE or chain.share < MUCH
@@ -457,7 +469,7 @@ class _Screen:
         scene = replace(self._scene, allowance=inputs.allowance_of(face))
         wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
-        held = ReachScreen(cells, scene).screen(tools, axes, wide > 0)
+        held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         return FacePrices(seconds, cells.area), facing
 

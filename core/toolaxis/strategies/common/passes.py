@@ -152,7 +152,7 @@ def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tu
     piece, along = follow(chart, cut, placed.pieces, job.chord)
     steps = placed.pieces[piece, 2]
     contact, tip, normal = tip_points(chart, cut, along, steps)
-    deeper = rises(chart, cut, steps, piece, along)[:, None] * normal
+    deeper = rises(chart, cut, steps, (piece, along), tip)[:, None] * normal
     rows = contact, tip - deeper, normal, cut.axes(chart.face, chart.uv(along, steps))
     strokes = [MovingCuttingMove(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
     return placed, join_moves(_order_moves(strokes, placed, job.direction), _links(job, cut))
