@@ -55,7 +55,7 @@ def roof(document, name="Roof"):
 
 def wave(document, name="Wave"):
     """A block whose top rises, falls and rises, so that several axes take less cutting than one."""
-    return block_under(document, interpolated([[Vector(x, y, 14 + 4 * sin(pi * x / 15)) for y in (0, 6, 12, 18)]
+    return block_under(document, interpolated([[Vector(x, y, 14 + 4 * sin(pi * x / 15)) for y in (0, 3, 6, 9)]
                                                for x in range(0, 31, 3)]), name)
 
 
