@@ -257,7 +257,7 @@ def test_a_plan_made_by_the_panel_is_made_again_by_the_macro(desk, wavy, recorde
     part, face = wavy
 
     form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
+    desk.type(form.scallop, "0.05 mm")
     desk.computed(form)
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
@@ -296,7 +296,7 @@ def test_freecads_own_recorder_keeps_what_the_panel_did(desk, wavy, remembered, 
     timer.start()
     desk.gui.runCommand("Std_DlgMacroRecord")
     form = desk.start(part, face)
-    desk.type(form.scallop, "0.2 mm")
+    desk.type(form.scallop, "0.05 mm")
     desk.computed(form)
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")

@@ -230,7 +230,7 @@ def test_a_disk_that_is_full(desk, operation, tmp_path):
     assert is_sentence(form.message.text()) and not list(tmp_path.iterdir()), form.message.text()
 
 
-def test_a_clamp_deleted_while_it_is_ticked(desk, wavy):
+def test_a_clamp_deleted_while_it_is_ticked(desk, wavy, remembered):
     part, face = wavy
     document = part.Document
     clamp = document.addObject("Part::Box", "Clamp")
@@ -258,6 +258,8 @@ def test_a_clamp_deleted_between_planning_and_ok(desk, wavy, remembered):
     form = desk.start(part, face)
     form.avoid.model().setData(form.avoid.model().index(0, 0), 2, desk.qt.Qt.CheckStateRole)
     desk.type(form.scallop, "0.05 mm")
+    form.limits.setCurrentIndex(1)
+    desk.type(form.cone, "10 deg")
     desk.computed(form)
     document.removeObject(clamp.Name)
     desk.pump(0.2)
