@@ -23,14 +23,14 @@ from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
 from toolaxis.strategies.constant_lead import search
 
-TOOL = ta.Tool.ball(6)
-SCALLOP, LIMITS = 0.2, "cone:0,0,1,8"
+TOOL = ta.Tool.ball(4)
+SCALLOP, LIMITS = 0.2, "cone:0,0,1,4"
 FORKED = pytest.param(2, marks=pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux"))
 
 
 def sheets(count: int = 3) -> Part:
-    """Wavy sheets of 14 x 10 mm beside each other."""
-    x, y = np.meshgrid(np.linspace(0, 14, 5), np.linspace(0, 10, 5), indexing="ij")
+    """Wavy sheets of 9 x 6 mm beside each other."""
+    x, y = np.meshgrid(np.linspace(0, 9, 5), np.linspace(0, 6, 5), indexing="ij")
     z = 0.4 * np.sin(x / 6) * np.cos(y / 5)
     return Part.from_faces([ta.Face.from_bspline(np.stack([x + 40 * k, y, z], axis=-1)) for k in range(count)])
 

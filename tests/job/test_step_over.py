@@ -61,9 +61,9 @@ def plain() -> Plan:
 
 
 @pytest.mark.parametrize("most, tool, more", [
-    (MOST, "torus:8x1", {}), (MOST, "ball:8", {}), (MOST, "flat:8", {}), (WIDE, "torus:8x1", {"passes": "planes"}),
-    (WIDE, "torus:8x1", {"passes": "scallop"}), (WIDE, "torus:8x1", {"strategy": "sturz"}),
-    (WIDE, "torus:8x1", {"regions": 2})])
+    (MOST, "torus:8x1", {}), (MOST, "ball:8", {}), (MOST, "flat:8", {}), (WIDE, "ball:8", {"passes": "planes"}),
+    (WIDE, "ball:8", {"passes": "scallop", "method": "normal"}), (WIDE, "torus:8x1", {"strategy": "sturz"}),
+    (WIDE, "ball:8", {"regions": 2, "limits": "cone:0,0,1,20"})])
 def test_no_place_is_farther_from_a_pass_than_half_of_it(most: float, tool: str, more: dict[str, object]) -> None:
     made = plan_hill(most, tool, **more)
     assert made.outcome == "complete"
