@@ -1,11 +1,11 @@
 """Parts that nobody here made: what share of their sculptured faces ends with a verified operation, and why not all.
 
 ``python -m benchmarks real_parts [FOLDER|PART|RESULT.json] [options]`` takes each STEP file through the command as a
-user does: ``inspect --json``, ``plan --workers 1``, ``verify``, each in a process of its own with the interpreter that
-runs this, bounded in processor time (``--limit`` for each; the judge, who works with two threads, gets twice that) and
-in address space (``--memory``); six times as much on the clock counts as hung.  A plan that runs out of time gets
-SIGTERM once: what it finished is judged and counted.  As only the command is run and only what it writes is read, this
-file measures other versions too: name one by PYTHONPATH.
+user does: ``inspect --json``, ``plan``, ``verify``, each in a process of its own with the interpreter that runs this,
+the plan on one core unless ``--workers`` says more.  Each is bounded in processor time (``--limit``; the judge, who
+works with two threads, gets twice that) and in address space (``--memory``); six times as much on the clock counts as
+hung.  A plan that runs out of time gets SIGTERM once: what it finished is judged and counted.  As only the command is
+run and only what it writes is read, this file measures other versions too: name one by PYTHONPATH.
 
 The tool is the same for all faces of a part: `benchmarks._rack` states the rule; ``--tools`` names a rack in its place
 (``general-rack`` is the one that is shipped), with which the whole part is planned, as for a user who names no faces.
@@ -56,6 +56,8 @@ def _parser() -> argparse.ArgumentParser:
     made.add_argument("--only", metavar="NAMES", help="only files whose names begin so: ctc02,nacelle")
     made.add_argument("--limit", type=float, default=600.0, metavar="S",
                       help="processor seconds for each process of a part (default: 600)")
+    made.add_argument("--workers", type=int, default=1, metavar="N",
+                      help="cores to plan on, which share the processor seconds (default: 1)")
     made.add_argument("--memory", type=float, default=4.0, metavar="GB",
                       help="address space of each process (default: 4)")
     made.add_argument("--keep", type=Path, metavar="DIR", help="keep plans and verdicts there, a folder for each part")
@@ -146,7 +148,8 @@ def _measure(path: Path, asked: argparse.Namespace, place: Path) -> dict[str, An
                 unit=survey["unit"], diagonal=survey["diagonal"], warnings=survey["warnings"],
                 tool=tool.name, tool_file=tool.file, scallop=scallop, refused="", reasons=[])
     if areas:
-        words = [str(path), *_tool_words(tool, asked.tools is not None, place), "--scallop", str(scallop)]
+        words = [str(path), *_tool_words(tool, asked.tools is not None, place), "--scallop", str(scallop),
+                 "--workers", str(asked.workers)]
         whole = asked.tools is not None and asked.sample is None and asked.faces is None
         part["rows"] = _planned_and_judged(part, words, areas, whole, (bounds, place))
     part["wall"] = time.monotonic() - began
@@ -181,7 +184,7 @@ def _planned_and_judged(part: dict[str, Any], words: list[str], areas: Mapping[i
                         where: tuple[Bounds, Path]) -> list[dict[str, Any]]:
     bounds, place = where
     folder = place / "plan"
-    usual = [*_COMMAND, "plan", *words, "--out", str(folder), "--workers", "1", "--no-pictures"]
+    usual = [*_COMMAND, "plan", *words, "--out", str(folder), "--no-pictures"]
     faces = () if whole else ("--faces", ",".join(map(str, areas)))
     planned = run(python(*usual, *faces), bounds, place)
     part["processes"]["plan"] = _process(planned)

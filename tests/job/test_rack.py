@@ -19,7 +19,7 @@ from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning import pipeline
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.job.planning.rack import RackPlanner, _merge, _Screen, _Waiting
+from toolaxis.job.planning.rack import RackPlanner, _merge, _Screen, _Screened, _Waiting
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -28,7 +28,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
-from toolaxis.regions.tool_choice import ToolChain
+from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.report.warnings import warnings_of
 from toolaxis.search.machine_limits import intersect_limits
@@ -311,14 +311,14 @@ def test_what_was_not_begun_is_told_in_table_and_file(stopped: Plan, tmp_path: P
 
 def test_stopped_in_the_choice_of_the_next_tool_it_keeps_all_of_a_tool(monkeypatch: pytest.MonkeyPatch) -> None:
     """Found: the first face asked for the next tool, was stopped there, and took the others' operations with it."""
-    whole = _Screen.chains
+    whole = _Screen.look_at
 
-    def _stopped(screen: _Screen, face: ta.Face, begin: int) -> tuple[ToolChain, ...]:
+    def _stopped(screen: _Screen, face: ta.Face, begin: int) -> _Screened:
         if begin:
             raise Cancelled("cancelled by the user")
         return whole(screen, face, begin)
 
-    monkeypatch.setattr(_Screen, "chains", _stopped)
+    monkeypatch.setattr(_Screen, "look_at", _stopped)
     made = ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1)
     assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["1", "2"]
     assert whole_area(made) == pytest.approx(made.account.area) and made.account.not_begun > 24 * 2
@@ -399,6 +399,26 @@ def test_what_is_in_reach_of_some_tool_is_told_of_a_face() -> None:
     assert 0.75 * face.area < large < both <= face.area * (1 + 1e-9)
     below = replace(job, limits=intersect_limits(None, "cone:0,0,-1,20"))
     assert _Screen([below], [face]).reachable(face) == 0.0
+
+
+def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: a face that tool after tool could not machine was screened anew with all smaller tools each time."""
+    part, tools = walled(), [*TOOLS, ta.Tool.ball(1)]
+    plan = ta.plan(part, TOOLS[1], SCALLOP, faces=[1], limits=UP, workers=1)
+    jobs = [PlanningJob(part, tool, plan.inputs, None, (), np.zeros(3)) for tool in tools]
+    face = part.face(1)
+    half = face.trimmed((np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]]),))
+    anew = [_Screen(jobs, [face]).look_at(one, begin).chains for one in (face, half) for begin in (1, 2)]
+    screen, asked = _Screen(jobs, [face]), []
+    whole = ReachScreen.screen_promising
+    monkeypatch.setattr(ReachScreen, "screen_promising", lambda *words: asked.append(words) or whole(*words))
+    screen.keep({face: screen.look_at(face, 1)})
+    assert [screen.look_at(face.trimmed(face.outline), begin).chains for begin in (1, 2)] == anew[:2]
+    assert len(asked) == 1
+    assert [screen.look_at(half, begin).chains for begin in (1, 2)] == anew[2:]
+    assert len(asked) == 3
+    screen.look_at(face, 0)  # of a larger tool nothing is known yet
+    assert len(asked) == 4
 
 
 def test_faces_of_a_skin_are_planned_one_by_one_only_where_more_of_it_is_in_reach(

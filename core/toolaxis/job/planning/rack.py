@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,15 +135,16 @@ class RackPlanner:
         self._done += [target.ended for target in pieces if target.ended is not None]
         self._screen = _Screen(self.jobs, whole)
 
-        def _chains(k: int, inner: Progress) -> tuple[ToolChain, ...]:
+        def _look_at(k: int, inner: Progress) -> _Screened:
             inner.report("choice of tools", k, len(whole))
-            return self._screen.chains(whole[k], 0)
+            return self._screen.look_at(whole[k], 0)
 
-        found = abreast(_chains, len(whole), self.jobs[0].workers, progress)
+        found = abreast(_look_at, len(whole), self.jobs[0].workers, progress)
         if found.cancelled:
             raise Cancelled("cancelled by the user")
         self._done += [fail_face(1, whole[k], smallest, why) for k, why in found.faults.items()]
-        screened, chains = [whole[k] for k in found.results], list(found.results.values())
+        screened, chains = [whole[k] for k in found.results], [one.chains for one in found.results.values()]
+        self._screen.keep({whole[k]: one for k, one in found.results.items()})
         choice = choose_tools(chains, CHANGE_SECONDS, self.most)
         self._tell_time(sum(face.area for face in screened), sum(one.seconds for one in choice.chains), progress)
         self._used = set(choice.tools)
@@ -251,18 +253,20 @@ class RackPlanner:
     def _chains_for(self, rests: Sequence[Face | None], tool: int,
                     progress: Progress) -> list[tuple[ToolChain, ...]] | None:
         """What smaller tools may do of what one left, for each rest; None where the user stopped it."""
-        def _chains(k: int, inner: Progress) -> tuple[ToolChain, ...]:
+        def _look_at(k: int, inner: Progress) -> _Screened | None:
             inner.report("choice of tools", k, len(rests))
             rest = rests[k]
             if rest is None or rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
-                return ()
-            return self._screen.chains(rest, tool + 1)
+                return None
+            return self._screen.look_at(rest, tool + 1)
 
-        found = abreast(_chains, len(rests), self.jobs[0].workers, progress)
+        found = abreast(_look_at, len(rests), self.jobs[0].workers, progress)
         if found.cancelled:
             return None
         # Where it fails, what was left stays open, as it is told of the operation that left it.
-        return [found.results.get(k, ()) for k in range(len(rests))]
+        seen = [(rest, found.results.get(k)) for k, rest in enumerate(rests)]
+        self._screen.keep({rest: one for rest, one in seen if rest is not None and one is not None})
+        return [() if one is None else one.chains for _, one in seen]
 
     def _take_over(self, op: Operation, origin: _Waiting, rest: Face | None, chains: Sequence[ToolChain]) -> None:
         """Keep an operation, and send what it leaves to the next tool."""
@@ -413,6 +417,36 @@ def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
     return named[label]
 
 
+class _Reach(NamedTuple):
+    """Which cells of a face tools reach under axes, small enough to be kept for every face.
+
+    begin : number of the first of the tools
+    shape : tools, axes, cells
+    bits : of an array of bool of that shape, eight to a byte
+    """
+
+    begin: int
+    shape: tuple[int, ...]
+    bits: NDArray[np.uint8]
+
+    def from_tool(self, begin: int) -> NDArray[np.bool_]:
+        """The array, (tools, axes, cells), from a tool on."""
+        count = int(np.prod(self.shape))
+        whole = np.unpackbits(self.bits, count=count).astype(bool).reshape(self.shape)
+        return np.asarray(whole[begin - self.begin:])
+
+
+class _Screened(NamedTuple):
+    """What the screening says of a face.
+
+    chains : of tools, the cheapest first
+    reach : what they stand on
+    """
+
+    chains: tuple[ToolChain, ...]
+    reach: _Reach
+
+
 class _Screen:
     """What tools reach of faces, and what it takes, as the screening sees it.
 
@@ -428,13 +462,15 @@ class _Screen:
         self._jobs = jobs
         self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
                                     first.inputs.allowance)
+        #: What was found of faces by their places; they are kept with it so that no other surface takes their number.
+        self._known: dict[tuple[int, int, bytes], tuple[Face, _Reach]] = {}
         self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
 
     def _cells(self, face: Face) -> FaceCells:
         return FaceCells.few(face, max(self._jobs[-1].tool.radius, float(np.sqrt(face.area / _CELLS))))
 
-    def chains(self, face: Face, begin: int) -> tuple[ToolChain, ...]:
-        """Chains of tools for a face, from a tool on.
+    def look_at(self, face: Face, begin: int) -> _Screened:
+        """What tools, from one on, may do of a face.
 
         Parameters
         ----------
@@ -442,9 +478,22 @@ class _Screen:
         begin : int
         """
         prices, facing = self._prices(face, begin)
-        found = chains_of(prices, INDEX_SECONDS)
-        return tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
-                     if one.tools else one for one in found)
+        held = np.isfinite(prices.seconds)
+        chains = tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
+                       if one.tools else one for one in chains_of(prices, INDEX_SECONDS))
+        return _Screened(chains, _Reach(begin, held.shape, np.packbits(held)))
+
+    def keep(self, screened: Mapping[Face, _Screened]) -> None:
+        """Remember what was found: a face that a tool cannot machine at all waits for the next one as it is.
+
+        Parameters
+        ----------
+        screened : mapping of Face to _Screened
+        """
+        for face, one in screened.items():
+            before = self._known.get(_place_of(face))
+            if before is None or one.reach.begin < before[1].begin:
+                self._known[_place_of(face)] = face, one.reach
 
     def reachable(self, face: Face) -> float:
         """Area of a face that some tool reaches under some axis, mm^2.
@@ -466,10 +515,14 @@ class _Screen:
         axes = self._axes[facing]
         if not len(axes) or not len(cells):
             return FacePrices(np.full((len(jobs), len(axes), len(cells)), np.inf), cells.area), facing
-        scene = replace(self._scene, allowance=inputs.allowance_of(face))
         wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
-        held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
+        known = self._known.get(_place_of(face))
+        if known is not None and known[1].begin <= begin:
+            held = known[1].from_tool(begin)
+        else:
+            scene = replace(self._scene, allowance=inputs.allowance_of(face))
+            held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         return FacePrices(seconds, cells.area), facing
 
@@ -481,3 +534,8 @@ class _Screen:
         chain : ToolChain
         """
         return self._axes[chain.axis] if chain.tools else None
+
+
+def _place_of(face: Face) -> tuple[int, int, bytes]:
+    """What tells a face from others of the same part: its surface, and where on that it lies."""
+    return face.number, id(face.surface), b"".join(loop.tobytes() for loop in face.outline)
