@@ -120,6 +120,8 @@ class ReachScreen:
         quarter = (self.cells.index % 2 == 0).all(axis=1)
         if quarter.sum() < _FEWEST:
             return self.screen(tools, rows, among)
+        for tool in tools:  # found for all cells, it serves every part of them
+            self._corner_fits(tool)
         some, others = np.flatnonzero(quarter), np.flatnonzero(~quarter)
         found = np.zeros((len(tools), len(rows), len(self.cells)), dtype=bool)
         found[:, :, some] = self.pick(some).screen(tools, rows, among[:, :, some])
