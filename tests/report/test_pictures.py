@@ -19,7 +19,7 @@ from toolaxis.report.figures.comparison_chart import baselines_picture, options_
 from toolaxis.report.figures.hatch_fill import COLOUR
 from toolaxis.report.figures.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.figures.map_colouring import colour_map
-from toolaxis.report.figures.plan_overview import overview_picture
+from toolaxis.report.figures.plan_overview import join_labels, overview_picture
 from toolaxis.report.figures.plots import (
     WidthStudy,
     cutting_lines,
@@ -85,6 +85,18 @@ def test_overview_shows_every_sub_surface_and_its_axis(tmp_path: Path) -> None:
     assert {text.get_text() for text in ax.texts} >= {"1", "2: no axis"}
     assert "1 of 2 sub-surfaces" in ax.get_title()
     assert len(colours_of(made, tmp_path / "plan.png")) > 10
+
+
+def test_sub_surfaces_without_an_axis_beside_each_other_have_one_label() -> None:
+    """Found: "6: no axis" and "7: no axis" lay on each other."""
+    places = {1: np.array([0.0, 0.0]), 4: np.array([9.0, 1.0]), 6: np.array([3.0, 1.0]), 7: np.array([8.0, 0.5])}
+    found = join_labels(places, np.array([5.0, 2.0]))
+    assert [numbers for numbers, _ in found] == [[1, 6], [4, 7]]
+    assert np.array_equal(found[0][1], places[1]) and np.array_equal(found[1][1], places[4])
+    plan, op = planned()
+    none = replace(op, orientation=Orientation(None, outcome="infeasible"), path=None)
+    made = overview_picture(replace(plan, operations=(op, replace(none, number=2), replace(none, number=3))))
+    assert [one.get_text() for one in made.axes[0].texts if "no axis" in one.get_text()] == ["2, 3: no axis"]
 
 
 def test_overview_shows_a_sliver_that_is_left() -> None:

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.numeric.vectors import unit
@@ -26,6 +26,8 @@ _MANY = 8
 _LIFT = 3
 #: Share of a face that its sub-surfaces cover from which on the face itself is not drawn.
 _COVERED = 0.995
+#: Width and height of a label of a sub-surface without an axis, in widths of the picture.
+_NEAR = np.array([0.14, 0.03])
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
@@ -78,10 +80,15 @@ def overview_picture(plan: Plan) -> Figure:
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
     feet, tips = seen.project(roots)[:, :2], seen.project(heads)[:, :2]
     at_feet = _apart(feet) > _apart(tips)
+    lost: dict[int, Array] = {}
     for op, foot, tip in zip(operations, feet, tips, strict=True):
         _passes(ax, canvas, op)
-        if op.done or outcome_of([op], plan.blades) == "incomplete":
+        if op.done:
             _arrow(ax, op, (foot, tip), at_feet)
+        elif outcome_of([op], plan.blades) == "incomplete":
+            lost[op.number] = foot
+    for numbers, place in join_labels(lost, _NEAR * float(np.ptp(seen.extent[:2]))):
+        _write(ax, f"{', '.join(map(str, numbers))}: no axis", place, (4.5, 4.5))
     done = sum(op.done for op in plan.operations)
     tool_words = f"{len(tools)} tools" if tools else plan.named_tools
     ax.set_title(f"{tool_words}, scallop {plan.inputs.scallop:g} mm: {done} of {len(plan.operations)} "
@@ -147,15 +154,44 @@ def _apart(places: Array) -> float:
     return float(cKDTree(places).query(places, k=2)[0][:, 1].min()) if len(places) > 1 else 0.0
 
 
+def join_labels(places: dict[int, Array], near: Array) -> list[tuple[list[int], Array]]:
+    """What is labelled once, as labels of its own would lie on each other.
+
+    Parameters
+    ----------
+    places : dict of int to (2,) array
+        Where the label of each number would lie.
+    near : (2,) array
+        Width and height of a label.
+
+    Returns
+    -------
+    list of numbers and (2,) array
+        Those under one label, and where it lies: at the place of the first of them.
+    """
+    found: list[tuple[list[int], Array]] = []
+    for number, place in places.items():
+        taken = next((numbers for numbers, other in found if (abs(place - other) < near).all()), None)
+        if taken is None:
+            found.append(([number], place))
+        else:
+            taken.append(number)
+    return found
+
+
 def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool) -> None:
     """The axis as an arrow, its number behind the foot or before the tip."""
     foot, tip = ((float(end[0]), float(end[1])) for end in ends)
-    if op.done:
-        ax.plot(*foot, "o", color="black", markersize=3.5)
-        ax.annotate("", tip, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
+    ax.plot(*foot, "o", color="black", markersize=3.5)
+    ax.annotate("", tip, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
     length = float(np.linalg.norm(ends[1] - ends[0]))
-    way = (ends[1] - ends[0]) / length if op.done and length > 0 else np.array([0.5, 0.5])
-    ax.annotate(f"{op.number}" if op.done else f"{op.number}: no axis", foot if at_foot else tip,
-                textcoords="offset points", xytext=tuple((-10 if at_foot and op.done else 9) * way), fontsize=11,
+    way = (ends[1] - ends[0]) / length if length > 0 else np.array([0.5, 0.5])
+    _write(ax, f"{op.number}", ends[0] if at_foot else ends[1], (-10 if at_foot else 9) * way)
+
+
+def _write(ax: Axes, words: str, place: Array, offset: ArrayLike) -> None:
+    """Words beside a place, (2,), with an offset in points, (2,)."""
+    x, y = np.asarray(offset, dtype=float)
+    ax.annotate(words, (float(place[0]), float(place[1])), textcoords="offset points", xytext=(x, y), fontsize=11,
                 weight="bold", path_effects=[patheffects.withStroke(linewidth=3, foreground="white")], ha="center",
                 va="center", zorder=5)
