@@ -417,7 +417,7 @@ def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
     return named[label]
 
 
-class _Reach(NamedTuple):
+class _ReachBits(NamedTuple):
     """Which cells of a face tools reach under axes, small enough to be kept for every face.
 
     begin : number of the first of the tools
@@ -444,7 +444,7 @@ class _Screened(NamedTuple):
     """
 
     chains: tuple[ToolChain, ...]
-    reach: _Reach
+    reach: _ReachBits
 
 
 class _Screen:
@@ -463,7 +463,7 @@ class _Screen:
         self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
                                     first.inputs.allowance)
         #: What was found of faces by their places; they are kept with it so that no other surface takes their number.
-        self._known: dict[tuple[int, int, bytes], tuple[Face, _Reach]] = {}
+        self._known: dict[tuple[int, int, bytes], tuple[Face, _ReachBits]] = {}
         self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
 
     def _cells(self, face: Face) -> FaceCells:
@@ -481,7 +481,7 @@ class _Screen:
         held = np.isfinite(prices.seconds)
         chains = tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
                        if one.tools else one for one in chains_of(prices, INDEX_SECONDS))
-        return _Screened(chains, _Reach(begin, held.shape, np.packbits(held)))
+        return _Screened(chains, _ReachBits(begin, held.shape, np.packbits(held)))
 
     def keep(self, screened: Mapping[Face, _Screened]) -> None:
         """Remember what was found: a face that a tool cannot machine at all waits for the next one as it is.
