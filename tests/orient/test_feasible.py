@@ -16,6 +16,8 @@ from toolaxis.feasibility.violations import BACK, CUTTER, FREE, GOUGE, HOLDER, L
 from toolaxis.machine.limits import parse_limits
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.search.direction_grid import spiral
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
@@ -139,7 +141,7 @@ def test_groups_sort_faces_by_their_edges(make):
 
 
 @pytest.mark.parametrize("name", ["blisk", "bosses"])
-def test_faces_that_meet_the_skin_at_a_corner_alone_may_be_touched_too(name):
+def test_faces_that_meet_the_skin_may_be_touched_but_not_walls(name):
     pytest.importorskip("OCP")
     part = ta.load(EXAMPLES / f"{name}.step")
     for face in part.sculptured[:6]:
@@ -152,6 +154,19 @@ def test_faces_that_meet_the_skin_at_a_corner_alone_may_be_touched_too(name):
         groups = group_surroundings(face, Tolerance(), part=part)
         found = {own.number for group in groups if group.role == TOUCHING for own in group.faces}
         assert found == met - walls - skin
+
+
+def test_a_face_across_a_peak_may_be_touched(make):
+    """Of four sheets around a peak two opposite ones share nothing but it."""
+    sheets = []
+    for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+        corners = [[[i * x, j * y, -0.2 * (i + j)] for j in (0.0, 9.0)] for i in (0.0, 9.0)]
+        sheets.append(Face.from_bspline(np.array(corners), (1, 1), flip=x * y < 0))
+    part = Part.from_faces(sheets)
+    assert part.neighbours(1, "convex") == (2, 4)
+    groups = group_surroundings(part.faces[0], Tolerance(), part=part)
+    assert [(group.role, sorted(face.number for face in group.faces)) for group in groups] == [
+        (SKIN, [1]), (TOUCHING, [2, 3, 4])]
 
 
 def test_obstacles_must_be_faces(make):
