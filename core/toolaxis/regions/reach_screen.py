@@ -4,7 +4,6 @@ What it says is for choosing; the search and the proof of the passes decide.
 """
 
 from collections.abc import Sequence
-from functools import cached_property
 from math import pi
 
 import numpy as np
@@ -42,17 +41,15 @@ class ReachScreen:
     cells : FaceCells
         Of a face of the scene's part, or of a piece of one.
     scene : ReachScene
+    required : (faces + 1, 4) array, optional
+        What tools have to keep, mm, of `ReachScene.required` where it is known.
     """
 
-    def __init__(self, cells: FaceCells, scene: ReachScene) -> None:
+    def __init__(self, cells: FaceCells, scene: ReachScene, required: Array | None = None) -> None:
         self.cells, self.scene = cells, scene
+        self._required = scene.required(cells.face) if required is None else required
         #: By corner radius, where the ball of a corner fits, (n,).
         self._corners: dict[float, Bools] = {}
-
-    @cached_property
-    def _required(self) -> Array:
-        """What tools have to keep, (faces + 1, 4) mm."""
-        return self.scene.required(self.cells.face)
 
     def pick(self, rows: Indices) -> "ReachScreen":
         """The screening of some of the cells.
@@ -61,8 +58,7 @@ class ReachScreen:
         ----------
         rows : (m,) array of int
         """
-        made = ReachScreen(self.cells.pick(rows), self.scene)
-        made.__dict__["_required"] = self._required
+        made = ReachScreen(self.cells.pick(rows), self.scene, self._required)
         made._corners = {radius: fits[rows] for radius, fits in self._corners.items()}
         return made
 

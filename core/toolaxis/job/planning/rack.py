@@ -28,6 +28,7 @@ from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
 from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.skin.join import take_apart
 
 Array = NDArray[np.float64]
@@ -201,16 +202,15 @@ class RackPlanner:
         origins = [_origin(op.face, now) for op in made.operations]
         rests = [_rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
         following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
-        stopped = following is None
-        for k, (op, origin) in enumerate(zip(made.operations, origins, strict=True)):
-            if following is None:  # what is finished is kept; nothing goes to another tool any more
-                self._keep_last(op, origin, tool)
-            else:
-                self._take_over(op, origin, rests[k], following[k])
-        if stopped:
-            with activate_progress(NO_PROGRESS):  # areas are evaluated for it, whoever wants to stop
-                self._count_unfinished(now, made.operations)
-        return not stopped
+        if following is not None:
+            for op, origin, rest, chains in zip(made.operations, origins, rests, following, strict=True):
+                self._take_over(op, origin, rest, chains)
+            return True
+        for op, origin in zip(made.operations, origins, strict=True):
+            self._keep_last(op, origin, tool)
+        with activate_progress(NO_PROGRESS):  # areas are evaluated for it, whoever wants to stop
+            self._count_unfinished(now, made.operations)
+        return False
 
     def _keep_last(self, op: Operation, origin: _Waiting, tool: int) -> None:
         """Keep an operation when the user has stopped the plan: no smaller tool is asked for what it leaves."""
@@ -253,10 +253,13 @@ class RackPlanner:
     def _chains_for(self, rests: Sequence[Face | None], tool: int,
                     progress: Progress) -> list[tuple[ToolChain, ...]] | None:
         """What smaller tools may do of what one left, for each rest; None where the user stopped it."""
+        if tool + 1 >= len(self.jobs):
+            return [()] * len(rests)
+
         def _look_at(k: int, inner: Progress) -> _Screened | None:
             inner.report("choice of tools", k, len(rests))
             rest = rests[k]
-            if rest is None or rest.area < LEAST_AREA or tool + 1 >= len(self.jobs):
+            if rest is None or rest.area < LEAST_AREA:
                 return None
             return self._screen.look_at(rest, tool + 1)
 
@@ -462,8 +465,8 @@ class _Screen:
         self._jobs = jobs
         self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
                                     first.inputs.allowance)
-        #: What was found of faces by their places; they are kept with it so that no other surface takes their number.
-        self._known: dict[tuple[int, int, bytes], tuple[Face, _ReachBits]] = {}
+        #: What was found of faces, by their places.
+        self._known: dict[tuple[NurbsSurface, bytes], _ReachBits] = {}
         self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
 
     def _cells(self, face: Face) -> FaceCells:
@@ -492,8 +495,8 @@ class _Screen:
         """
         for face, one in screened.items():
             before = self._known.get(_place_of(face))
-            if before is None or one.reach.begin < before[1].begin:
-                self._known[_place_of(face)] = face, one.reach
+            if before is None or one.reach.begin < before.begin:
+                self._known[_place_of(face)] = one.reach
 
     def reachable(self, face: Face) -> float:
         """Area of a face that some tool reaches under some axis, mm^2.
@@ -518,8 +521,8 @@ class _Screen:
         wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
         pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
         known = self._known.get(_place_of(face))
-        if known is not None and known[1].begin <= begin:
-            held = known[1].from_tool(begin)
+        if known is not None and known.begin <= begin and known.shape[1:] == wide.shape[1:]:
+            held = known.from_tool(begin)
         else:
             scene = replace(self._scene, allowance=inputs.allowance_of(face))
             held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
@@ -536,6 +539,6 @@ class _Screen:
         return self._axes[chain.axis] if chain.tools else None
 
 
-def _place_of(face: Face) -> tuple[int, int, bytes]:
-    """What tells a face from others of the same part: its surface, and where on that it lies."""
-    return face.number, id(face.surface), b"".join(loop.tobytes() for loop in face.outline)
+def _place_of(face: Face) -> tuple[NurbsSurface, bytes]:
+    """What tells a face from others: its surface, and where on that it lies."""
+    return face.surface, b"".join(loop.tobytes() for loop in face.outline)

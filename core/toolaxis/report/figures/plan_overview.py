@@ -155,19 +155,19 @@ def _apart(places: Array) -> float:
 
 
 def join_labels(places: dict[int, Array], near: Array) -> list[tuple[list[int], Array]]:
-    """What is labelled once, as labels of its own would lie on each other.
+    """Numbers that share a label, as labels of their own would lie on each other.
 
     Parameters
     ----------
     places : dict of int to (2,) array
-        Where the label of each number would lie.
+        Where the label of each number would be written.
     near : (2,) array
         Width and height of a label.
 
     Returns
     -------
     list of numbers and (2,) array
-        Those under one label, and where it lies: at the place of the first of them.
+        Those of each label, and where it is written: at the place of the first of them.
     """
     found: list[tuple[list[int], Array]] = []
     for number, place in places.items():
