@@ -14,6 +14,7 @@ from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.regions import reach_screen
 from toolaxis.regions.cells import FaceCells, screening_axes
+from toolaxis.regions.reach_kernel import ReachTips
 from toolaxis.regions.reach_screen import ReachScreen, screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face
@@ -278,7 +279,7 @@ def test_only_what_is_asked_for_is_answered_and_as_without_asking(scenes, monkey
     whole = screen_reach(cells, tools, axes, scene)
     asked = np.random.default_rng(4).random(whole.shape) < 0.5
     looked, find = [], reach_screen.find_blocked
-    monkeypatch.setattr(reach_screen, "find_blocked", lambda *some: looked.append(len(some[2])) or find(*some))
+    monkeypatch.setattr(reach_screen, "find_blocked", lambda *some: looked.append(len(some[2].place)) or find(*some))
     found = ReachScreen(cells, scene).screen(tools, axes, asked)
     assert np.array_equal(found, whole & asked) and (whole & ~asked).any()
     half = sum(looked)
@@ -312,3 +313,64 @@ def test_few_cells_are_screened_whole(scenes) -> None:
     among = np.ones((3, len(axes), len(cells)), dtype=bool)
     found = ReachScreen(cells, scene).screen_promising(tools, axes, among)
     assert np.array_equal(found, screen_reach(cells, tools, axes, scene))
+
+
+def screen_without_balls(cells: FaceCells, tools: list[Tool], axes: np.ndarray, scene: ReachScene) -> np.ndarray:
+    """What the screen says where no ball at a contact tells anything."""
+    find = reach_screen.find_blocked
+
+    def find_without(tree, tool, known, room, blocked) -> None:
+        find(tree, tool, ReachTips.of(known.place, known.axis), room, blocked)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reach_screen, "find_blocked", find_without)
+        return screen_reach(cells, tools, axes, scene)
+
+
+def test_balls_that_fit_at_contacts_change_no_answer_in_a_pocket(scenes) -> None:
+    part, tools = scenes.pocket(), scenes.rack()
+    scene, face = ReachScene.of(part), some_of(part, 1)[0]
+    cells = FaceCells.of(face, 1.5)
+    axes = screening_axes([cells], None, np.radians(25))
+    found = screen_reach(cells, tools, axes, scene)
+    assert found.any() and (~found).any()
+    assert np.count_nonzero(found != screen_without_balls(cells, tools, axes, scene)) <= 2e-3 * found.size
+
+
+@pytest.mark.parametrize("height", [1.0, 2.0, 3.0, 4.5])
+def test_balls_that_fit_at_contacts_hide_no_low_step_from_a_leaning_tool(scenes, height: float) -> None:
+    # The wall keeps the balls small; the tools lean away from it, over a step that is lower than their middles.
+    wall = scenes.plate([[5.0, 0, -5], [5, 40, -5], [5, 0, 30], [5, 40, 30]])
+    step = scenes.plate([[32.0, 0, -5], [32, 40, -5], [32, 0, height], [32, 40, height]])
+    part, cells = floor_and(wall, step)
+    tools = [Tool.ball(4, stickout=30.0, flute_length=20.0, shank=[(2.5, 20.0), (2.5, 30.0)],
+                       holder=[(4.0, 0.0), (6.0, 20.0)]),
+             Tool.torus(6, 0.5, flute_length=12.0, stickout=25.0, holder=[(5.0, 0.0), (5.0, 20.0)])]
+    lean = np.radians([50.0, 60.0, 65.0, 70.0, 75.0, 80.0])
+    axes = np.stack([np.sin(lean), 0.05 * np.ones(6), np.cos(lean)], axis=1)
+    found = screen_reach(cells, tools, axes, ReachScene.of(part))
+    without = screen_without_balls(cells, tools, axes, ReachScene.of(part))
+    assert found.any(axis=(1, 2)).all() and not found.all(axis=(1, 2)).any()
+    assert np.count_nonzero(found != without) <= 1e-3 * found.size
+
+
+def test_a_shank_keeps_more_than_the_cutter_from_the_floor_that_it_leans_over() -> None:
+    part, cells = floor_and()
+    tool = Tool.ball(4, flute_length=4.0, stickout=30.0, holder=[(3.0, 0.0), (3.0, 20.0)])
+    for lean in np.radians([60.0, 70.0, 74.0, 80.0]):
+        # The shank is a cylinder as wide as the cutter, whose lower end comes nearest.
+        room = 2.0 + 2.0 * np.cos(lean) - 2.0 * np.sin(lean)
+        axis = np.array([np.sin(lean), 0.0, np.cos(lean)])
+        free = screen_reach(cells, [tool], [axis], ReachScene.of(part))[0, 0]
+        inner = (cells.point[:, 0] < 30) & (np.abs(cells.point[:, 1] - 20) < 15)
+        assert (free[inner] == (room >= 0.5)).all(), np.degrees(lean)
+
+
+def test_the_largest_balls_beside_a_wall_are_those_that_keep_their_distance(scenes) -> None:
+    part, cells = floor_and(scenes.plate([[30.0, 0, -5], [30, 40, -5], [30, 0, 30], [30, 40, 30]]))
+    found = ReachScreen(cells, ReachScene.of(part)).largest_balls
+    ladder = np.concatenate([[0.0], reach_screen._BALLS])
+    room = np.abs(30.0 - cells.point[:, 0]) - 0.1
+    sure = np.abs(room[:, None] - ladder).min(axis=1) > 0.01
+    assert np.array_equal(found[sure], ladder[np.searchsorted(ladder, room[sure]) - 1])
+    assert len(np.unique(found)) > 8

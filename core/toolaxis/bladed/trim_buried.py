@@ -32,6 +32,8 @@ SLIVER = 1e-3
 _EDGE = 1e-5
 #: Places of which the farthest from a body tells on which side of its border they all lie.
 _TRIED = 50
+#: Nodes along the sides of the blocks of which one is asked whether any may be near to a body.
+_BLOCK = 8
 _TRIES = 6
 
 
@@ -221,10 +223,14 @@ def _depth(face: Face, solid: Solid, lines: tuple[Array, Array]) -> Array:
         return depth.reshape(shape)
     kept = np.flatnonzero(wanted)
     points = on[kept] + 2 * ON * face.normal(rows[kept])
-    away = solid.away(points, reach + solid.spacing)
-    near = away.min(axis=0) <= reach
+    blocks = np.ravel_multi_index([place // _BLOCK for place in np.unravel_index(kept, shape)], shape)
+    asked = np.flatnonzero(_may_be_near(solid, points, blocks, reach))
+    away = solid.away(points[asked], reach + solid.spacing)
+    found = away.min(axis=0, initial=np.inf) <= reach
+    near = np.zeros(len(points), dtype=bool)
+    near[asked[found]] = True
     if near.any():
-        depth[kept[near]] = ON - solid.outside(points[near], away[:, near])
+        depth[kept[near]] = ON - solid.outside(points[near], away[:, found])
     far = np.zeros(len(rows), dtype=bool)
     far[kept[~near]] = True
     alike, count = label(far.reshape(shape))
@@ -234,6 +240,25 @@ def _depth(face: Face, solid: Solid, lines: tuple[Array, Array]) -> Array:
         farthest = some[solid.away(points[some]).min(axis=0).argmax()]
         depth[kept[there]] = 1.0 if solid.holds(points[farthest]) else -1.0
     return depth.reshape(shape)
+
+
+def _may_be_near(solid: Solid, points: Array, blocks: NDArray[np.int64], reach: float) -> NDArray[np.bool_]:
+    """Which points may be within reach of a body, (n,): those of blocks whose first point is not too far away.
+
+    Parameters
+    ----------
+    solid : Solid
+    points : (n, 3) array
+    blocks : (n,) array of int
+        Numbers of the blocks that they are in.
+    reach : float
+        mm
+    """
+    _, first, own = np.unique(blocks, return_index=True, return_inverse=True)
+    size = np.zeros(len(first))
+    np.maximum.at(size, own, np.linalg.norm(points - points[first[own]], axis=1))
+    away = solid.away(points[first], reach + float(size.max())).min(axis=0, initial=np.inf)
+    return np.asarray((away <= reach + size)[own])
 
 
 def cut_back_covered(part: Part, numbers: Collection[int],

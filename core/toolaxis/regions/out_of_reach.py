@@ -18,7 +18,7 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.progress import breathe
 from toolaxis.regions.axis_cones import CellCones, first_cones, shift_of_axis
 from toolaxis.regions.axis_lines import AxisLines
-from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTips, ReachTool, find_blocked
 from toolaxis.regions.rectangles import FaceRectangles, halve_rectangles, is_as_measured
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face
@@ -306,7 +306,7 @@ class _Proof:
                 some = slice(first, first + MOST_PIECES)
                 pieces = slices.pieces[some].copy()
                 pieces[:, 7] = np.arange(len(pieces))
-                tool = ReachTool(pieces, np.ascontiguousarray(slices.required[:, some] - less[some]))
+                tool = ReachTool.of(pieces, np.ascontiguousarray(slices.required[:, some] - less[some]))
                 rest = rows[~blocked[rows]]
                 blocked[rest] = self._find(tool, places[rest], axes[rest])
         return blocked
@@ -316,14 +316,14 @@ class _Proof:
         for first in range(0, len(places), _AT_ONCE):
             breathe()
             some = slice(first, first + _AT_ONCE)
-            find_blocked(self._scene.tree, tool, places[some], axes[some], self._room, found[some])
+            find_blocked(self._scene.tree, tool, ReachTips.of(places[some], axes[some]), self._room, found[some])
         return found
 
 
 def _take_off(whole: ReachTool, radius: float) -> ReachTool:
     """A tool with a smaller radius all along; what is no wider than that goes."""
     pieces = whole.pieces - np.array([radius, 0.0, 0.0, 0.0, 0.0, 0.0, radius, 0.0])
-    return ReachTool(pieces[(pieces[:, 0] >= 0) & (pieces[:, 6] > 0)], whole.limits)
+    return ReachTool.of(pieces[(pieces[:, 0] >= 0) & (pieces[:, 6] > 0)], whole.limits)
 
 
 def _cut_into_slices(whole: ReachTool, corner: float) -> _Slices:

@@ -4,6 +4,9 @@ Every piece of a tool is convex, so its signed distance is a convex function of 
 than the tangent at the cell's centre says.  That leaves out a cell along a contact although the cell is as near to the
 cutter as can be.  In what is left a few steps lead to the place that is nearest to the piece, where the tangent says
 most; that it is the nearest one of a leaf that bends more than the cutter is not proven.
+
+Around a contact many cells are as near to the cutter as can be.  Where the lower half of a ball that touches the face
+there is known to keep off all, so does what of the tool is inside the ball, and the cells beside it are left out.
 """
 
 from typing import NamedTuple
@@ -66,6 +69,67 @@ class ReachTool(NamedTuple):
     """Rows of `toolaxis.tools.solid.solid_pieces`, (k, 8); the component is a column of `limits`."""
     limits: Array
     """Least signed distance of each component from each face, and in the last row the greatest of them, mm."""
+    further: Array
+    """By how much more than the cutter each component has to keep off any face, at most, mm; inf where the cutter need
+    not keep off all of them, or balls at contacts are of no use."""
+    margin: float
+    """The greatest size of a limit of the cutter, mm."""
+
+    @staticmethod
+    def of(pieces: Array, limits: Array) -> "ReachTool":
+        """A tool for which balls at contacts are of no use.
+
+        Parameters
+        ----------
+        pieces, limits : arrays
+        """
+        return ReachTool(pieces, limits, np.full(limits.shape[1], np.inf), 0.0)
+
+
+class ReachTips(NamedTuple):
+    """Where a tool stands, and what is known of its cutter there."""
+
+    place: Array
+    """Tips, (n, 3) mm."""
+    axis: Array
+    """Unit vectors, tip to spindle, (n, 3)."""
+    normal: Array
+    """Unit normals at the contacts, (n, 3)."""
+    centre: Array
+    """Centres of balls that touch the face, or its allowance, at the contacts, (n, 3) mm."""
+    radius: Array
+    """Of these balls, whose lower halves keep off all as the cutter has to, (n,) mm; -inf where none is known."""
+
+    @staticmethod
+    def of(places: Array, axes: Array) -> "ReachTips":
+        """Tips without balls.
+
+        Parameters
+        ----------
+        places, axes : (n, 3) arrays
+        """
+        return ReachTips(places, axes, axes, places, np.full(len(places), -np.inf))
+
+    def pick(self, rows: Bools | Indices | slice) -> "ReachTips":
+        """Some of the tips.
+
+        Parameters
+        ----------
+        rows : array of bool or int, or slice
+        """
+        return ReachTips(self.place[rows], self.axis[rows], self.normal[rows], self.centre[rows], self.radius[rows])
+
+
+class _Clear(NamedTuple):
+    """What the ball at a contact tells, or the balls of a group of tips together."""
+
+    normal: Triple
+    turn: float
+    """Greatest length of the difference of a normal of the group from this one."""
+    above: float
+    """Height above the tip along the normal below which the balls' lower halves are, mm."""
+    heights: Array
+    """By piece, the height above the tip up to which it keeps off what is below that, mm; -inf where it need not."""
 
 
 class ReachRoom(NamedTuple):
@@ -75,12 +139,15 @@ class ReachRoom(NamedTuple):
     masks: Indices
     parts: Array
     near: Indices
+    heights: Array
+    above: Array
 
     @staticmethod
     def make() -> "ReachRoom":
         """An empty one."""
         return ReachRoom(np.empty(NEAR + DEEP + 2, np.int64), np.empty(NEAR + DEEP + 2, np.int64), np.empty((DEEP, 4)),
-                         np.empty((NEAR, 2), np.int64))
+                         np.empty((NEAR, 2), np.int64), np.empty((TOGETHER + 1, MOST_PIECES)),
+                         np.empty(TOGETHER))
 
 
 @jit_uncounted_inline
@@ -286,7 +353,7 @@ def _leaf_hit(tree: ReachTree, node: int, tool: tuple[Array, float], w: Triple, 
 
 @jit_uncounted
 def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Triple, axis: Triple,
-                 slack: float) -> int:
+                 slack: float, clear: _Clear) -> int:
     """Which of the pieces of a mask may be too near to a node: a mask of them; -1 where one surely is.
 
     slack : how far the tip may be from where it is said to be, mm
@@ -294,15 +361,19 @@ def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Trip
     face = tree.link[node, 2]
     row = face if face >= 0 else tool.limits.shape[0] - 1
     around, sure = float(tree.shape[node, 10]) + slack, tree.link[node, 4] > 0
-    z = dot(w, axis)
-    rho = np.sqrt(max(dot(w, w) - z * z, 0.0))
+    z, far = dot(w, axis), dot(w, w)
+    rho = np.sqrt(max(far - z * z, 0.0))
+    below = dot(w, clear.normal) + clear.turn * np.sqrt(far) + around <= clear.above
     kept, first = 0, True
     za, zb, ra, rb, rest = 0.0, 0.0, 0.0, 0.0, 0.0
     for p in range(tool.pieces.shape[0]):
-        if mask >> p & 1 == 0:
+        if mask >> p & 1 == 0 or (below and z + around <= clear.heights[p]):
             continue
         piece = tool.pieces[p]
         limit = tool.limits[row, int(piece[7])]
+        wide = max(piece[0] + piece[1], piece[6])
+        if max(piece[4] - z, z - piece[5], rho - wide) - around >= limit:  # most pieces are far away
+            continue
         value, along_rho, along_z, _ = piece_distance(piece, rho, z)
         if value - around >= limit:
             continue
@@ -320,8 +391,12 @@ def _pieces_near(tree: ReachTree, tool: ReachTool, node: int, mask: int, w: Trip
 
 
 @jit_uncounted
-def _gather_near(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, slack: float, room: ReachRoom) -> int:
-    """Nodes that any tip within a distance may be too near to, into the room; how many, or -1 where all surely are."""
+def _gather_near(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, slack: float, clear: _Clear,
+                 room: ReachRoom) -> int:
+    """Nodes that any tip within a distance may be too near to, into the room; how many, or -1 where all surely are.
+
+    clear : what is known of the cutter at all of these tips
+    """
     nodes, masks = room.nodes, room.masks
     nodes[0], masks[0] = 0, (1 << tool.pieces.shape[0]) - 1
     waiting, found = 1, 0
@@ -330,7 +405,7 @@ def _gather_near(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, sl
         node, mask = nodes[waiting], masks[waiting]
         q = _row(tree.shape, node, 0)
         w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
-        mask = _pieces_near(tree, tool, node, mask, w, axis, slack)
+        mask = _pieces_near(tree, tool, node, mask, w, axis, slack, clear)
         if mask == 0:
             continue
         if mask < 0:
@@ -350,7 +425,7 @@ def _gather_near(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, sl
 
 
 @jit_uncounted
-def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: ReachRoom,
+def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, clear: _Clear, room: ReachRoom,
              begin: tuple[int, int]) -> int:
     """A node with a place that is too near to the tool at a tip, -1 without one.
 
@@ -368,7 +443,7 @@ def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: 
         node = nodes[waiting]
         q = _row(tree.shape, node, 0)
         w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
-        mask = _pieces_near(tree, tool, node, masks[waiting], w, axis, 0.0)
+        mask = _pieces_near(tree, tool, node, masks[waiting], w, axis, 0.0, clear)
         if mask == 0:
             continue
         if mask < 0:
@@ -390,10 +465,10 @@ def _blocker(tree: ReachTree, tool: ReachTool, tip: Triple, axis: Triple, room: 
 
 
 @jit_uncounted
-def _group_end(tips: Array, axes: Array, first: int) -> int:
+def _group_end(axes: Array, first: int) -> int:
     """Behind the last of the tips from one on that have its axis, so many at most that they go together."""
     end = first + 1
-    while end < min(tips.shape[0], first + TOGETHER):
+    while end < min(axes.shape[0], first + TOGETHER):
         if axes[end, 0] != axes[first, 0] or axes[end, 1] != axes[first, 1] or axes[end, 2] != axes[first, 2]:
             break
         end += 1
@@ -401,24 +476,88 @@ def _group_end(tips: Array, axes: Array, first: int) -> int:
 
 
 @jit_uncounted
-def find_blocked(tree: ReachTree, tool: ReachTool, tips: Array, axes: Array, room: ReachRoom, blocked: Bools) -> None:
-    """Whether the tool comes nearer to a face than it may, into blocked (n,), at tips (n, 3) with axes (n, 3).
+def _middle(rows: Array, first: int, end: int) -> tuple[Triple, float]:
+    """The mean of some rows (n, 3), and how far they are from it at most."""
+    x, y, z = 0.0, 0.0, 0.0
+    for i in range(first, end):
+        x, y, z = x + rows[i, 0] / (end - first), y + rows[i, 1] / (end - first), z + rows[i, 2] / (end - first)
+    far = 0.0
+    for i in range(first, end):
+        far = max(far, (rows[i, 0] - x) ** 2 + (rows[i, 1] - y) ** 2 + (rows[i, 2] - z) ** 2)
+    return (x, y, z), np.sqrt(far)
+
+
+@jit_uncounted_inline
+def _row_of(rows: Array, k: int) -> Triple:
+    """A row of (n, 3) numbers."""
+    return rows[k, 0], rows[k, 1], rows[k, 2]
+
+
+@jit_uncounted
+def _find_clear(tool: ReachTool, tips: ReachTips, k: int, heights: Array) -> float:
+    """Heights up to which the pieces of a tool are inside the ball at a contact, and so keep off what is below its
+    middle, into (pieces,); how far above the tip along the normal that is.
+
+    The lower end of a piece is a disc with a round rim, as the upper one: it is inside where its farthest place is.
+    """
+    centre, radius = _row_of(tips.centre, k), tips.radius[k]
+    tip, axis = _row_of(tips.place, k), _row_of(tips.axis, k)
+    w = (centre[0] - tip[0], centre[1] - tip[1], centre[2] - tip[2])
+    z = dot(w, axis)
+    aside = np.sqrt(max(dot(w, w) - z * z, 0.0))
+    heights[:] = -np.inf
+    if radius <= 0.0:
+        return -np.inf
+    for p in range(tool.pieces.shape[0]):
+        piece = tool.pieces[p]
+        component = int(piece[7])
+        inner = radius - tool.further[component]
+        corner, low = piece[1], piece[4]
+        if np.sqrt((aside + piece[0]) ** 2 + (low + corner - z) ** 2) + corner > inner + _ROUNDING:
+            continue
+        heights[p] = low + corner * (1.0 - piece[3])
+        rim = aside + piece[6]
+        if rim <= inner:
+            heights[p] = max(heights[p], z + np.sqrt(inner * inner - rim * rim))
+        heights[p] -= max(tool.limits[tool.limits.shape[0] - 1, component], 0.0)
+    return dot(w, _row_of(tips.normal, k)) - tool.margin
+
+
+@jit_uncounted
+def _gather_for(tree: ReachTree, tool: ReachTool, tips: ReachTips, group: tuple[int, int], room: ReachRoom) -> int:
+    """What `_gather_near` says for a group of tips with one axis, from one on and before another."""
+    first, end = group
+    tip, slack = _middle(tips.place, first, end)
+    normal, turn = _middle(tips.normal, first, end)
+    least, heights = np.inf, room.heights[TOGETHER]
+    heights[:] = np.inf
+    for i in range(end - first):
+        least = min(least, room.above[i])
+        for p in range(tool.pieces.shape[0]):
+            heights[p] = min(heights[p], room.heights[i, p])
+    clear = _Clear(normal, turn, least, heights)
+    return int(_gather_near(tree, tool, tip, _row_of(tips.axis, first), slack + _ROUNDING, clear, room))
+
+
+@jit_uncounted
+def find_blocked(tree: ReachTree, tool: ReachTool, tips: ReachTips, room: ReachRoom, blocked: Bools) -> None:
+    """Whether the tool comes nearer to a face than it may at n tips, into blocked (n,).
 
     Tips beside each other with one axis share a look at what is near to any of them.
     """
     last, first = -1, 0
-    while first < tips.shape[0]:
-        end = _group_end(tips, axes, first)
-        x, y, z = 0.0, 0.0, 0.0
+    while first < tips.place.shape[0]:
+        end = _group_end(tips.axis, first)
         for i in range(first, end):
-            x, y, z = x + tips[i, 0] / (end - first), y + tips[i, 1] / (end - first), z + tips[i, 2] / (end - first)
-        slack = 0.0
-        for i in range(first, end):
-            slack = max(slack, (tips[i, 0] - x) ** 2 + (tips[i, 1] - y) ** 2 + (tips[i, 2] - z) ** 2)
-        axis = (axes[first, 0], axes[first, 1], axes[first, 2])
-        found = _gather_near(tree, tool, (x, y, z), axis, np.sqrt(slack) + _ROUNDING, room)
+            room.above[i - first] = _find_clear(tool, tips, i, room.heights[i - first])
+        if end == first + 1:
+            found = 1
+            room.near[0, 0], room.near[0, 1] = 0, (1 << tool.pieces.shape[0]) - 1
+        else:
+            found = _gather_for(tree, tool, tips, (first, end), room)
         for i in range(first, end):
             if found > 0:
-                last = _blocker(tree, tool, (tips[i, 0], tips[i, 1], tips[i, 2]), axis, room, (found, last))
+                clear = _Clear(_row_of(tips.normal, i), 0.0, room.above[i - first], room.heights[i - first])
+                last = _blocker(tree, tool, _row_of(tips.place, i), _row_of(tips.axis, i), clear, room, (found, last))
             blocked[i] = found < 0 or (found > 0 and last >= 0)
         first = end

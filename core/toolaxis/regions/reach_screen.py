@@ -13,7 +13,7 @@ from toolaxis.contact.placement import tips
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.progress import breathe
 from toolaxis.regions.cells import FaceCells
-from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTool, find_blocked
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTips, ReachTool, find_blocked
 from toolaxis.regions.scene import ReachScene
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -31,6 +31,8 @@ _BLOCK = 4
 _PROMISING, _FEWEST = 0.7, 12
 #: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
 _HALF = 1.0001
+#: Radii of the balls that are tried at every contact, mm: each so many times as large as the one before it.
+_BALLS = 0.3 * 1.5 ** np.arange(14)
 
 
 class ReachScreen:
@@ -50,6 +52,8 @@ class ReachScreen:
         self._required = scene.required(cells.face) if required is None else required
         #: By corner radius, where the ball of a corner fits, (n,).
         self._corners: dict[float, Bools] = {}
+        #: Radius of the largest ball of those tried that fits, mm, 0 for none, (n,).
+        self._fitting: Array | None = None
 
     def pick(self, rows: Indices) -> "ReachScreen":
         """The screening of some of the cells.
@@ -60,6 +64,7 @@ class ReachScreen:
         """
         made = ReachScreen(self.cells.pick(rows), self.scene, self._required)
         made._corners = {radius: fits[rows] for radius, fits in self._corners.items()}
+        made._fitting = self.largest_balls[rows]
         return made
 
     def screen(self, tools: Sequence[Tool], axes: ArrayLike, among: Bools | None = None) -> Bools:
@@ -88,8 +93,41 @@ class ReachScreen:
             if among is not None:
                 seen &= among[number]
             axis, cell = _side_by_side(cells, seen)
-            found[number, axis, cell] = ~_blocked(cells, tool, rows, (axis, cell), (scene, self._required))
+            found[number, axis, cell] = ~self._blocked(tool, rows[axis], cell)
         return found
+
+    def _blocked(self, tool: Tool, axes: Array, cell: Indices) -> Bools:
+        """Whether a tool comes too near to something at the contacts of cells (k,) under axes (k, 3)."""
+        cells, scene = self.cells, self.scene
+        point, normal = cells.point[cell], cells.normal[cell]
+        places = tips(point, normal, axes, tool, scene.allowance)
+        ball = np.maximum(self.largest_balls[cell], self._corner_of(tool))  # only asked where the corner's own fits
+        ball = np.where(ball > 0, ball, -np.inf)
+        centre = point + np.where(ball > 0, ball + scene.allowance, 0.0)[:, None] * normal
+        all_ = ReachTips(places, axes, normal, centre, ball)
+        whole = scene.tool(tool, self._required)
+        blocked = np.zeros(len(places), dtype=bool)
+        for first in range(0, len(whole.pieces), MOST_PIECES):
+            rest = np.flatnonzero(~blocked)
+            some = whole._replace(pieces=np.ascontiguousarray(whole.pieces[first:first + MOST_PIECES]))
+            blocked[rest] = _find(scene, some, all_.pick(rest))
+        return blocked
+
+    @property
+    def largest_balls(self) -> Array:
+        """Radius of the largest ball of those tried that fits at each contact, mm, 0 where none does, (n,)."""
+        if self._fitting is None:
+            # The first ball that is known to fit, and the first that is not: the smaller ones of one that fits do too.
+            fits = np.zeros(len(self.cells), dtype=int)
+            misses = np.full(len(self.cells), len(_BALLS) + 1)
+            while (open_ := misses - fits > 1).any():
+                middle = (fits + misses) // 2
+                for number in np.unique(middle[open_]):
+                    rows = np.flatnonzero(open_ & (middle == number))
+                    free = _ball_fits(self.cells.pick(rows), _BALLS[number - 1], self.scene, self._required)
+                    fits[rows[free]], misses[rows[~free]] = number, number
+            self._fitting = np.concatenate([[0.0], _BALLS])[fits]
+        return self._fitting
 
     def screen_promising(self, tools: Sequence[Tool], axes: ArrayLike, among: Bools) -> Bools:
         """What `screen` says, of all cells for the axes under which a tool reaches most, and under others only of cells
@@ -134,9 +172,14 @@ class ReachScreen:
         if len(some):
             found[:, some] |= self.pick(some).screen([tool], axes, among[None, :, some])[0]
 
+    @staticmethod
+    def _corner_of(tool: Tool) -> float:
+        """Radius of the ball that a tool holds at its contact under any axis, mm; 0 for none."""
+        return tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
+
     def _corner_fits(self, tool: Tool) -> Bools:
         """Whether the ball of a tool's corner, held at its contact under any axis, keeps off everything, (n,)."""
-        radius = tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
+        radius = self._corner_of(tool)
         if radius not in self._corners:
             self._corners[radius] = _ball_fits(self.cells, radius, self.scene, self._required)
         return self._corners[radius]
@@ -197,7 +240,7 @@ def _ball_fits(cells: FaceCells, radius: float, scene: ReachScene, required: Arr
         return np.ones(len(cells), dtype=bool)
     ball = np.array([[0.0, radius, 1.0, 0.0, 0.0, _HALF * radius, radius, 0.0]])
     places = cells.point + scene.allowance * cells.normal
-    return ~_find(scene, ReachTool(ball, required), places, cells.normal)
+    return ~_find(scene, ReachTool.of(ball, required), ReachTips.of(places, cells.normal))
 
 
 def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
@@ -208,25 +251,10 @@ def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
     return axis, order[place]
 
 
-def _blocked(cells: FaceCells, tool: Tool, axes: Array, pairs: tuple[Indices, Indices],
-             around: tuple[ReachScene, Array]) -> Bools:
-    """Whether a tool comes too near to something at pairs of an axis and a cell."""
-    scene, required = around
-    axis, cell = pairs
-    places = tips(cells.point[cell], cells.normal[cell], axes[axis], tool, scene.allowance)
-    whole = scene.tool(tool, required)
-    blocked = np.zeros(len(places), dtype=bool)
-    for first in range(0, len(whole.pieces), MOST_PIECES):
-        rest = np.flatnonzero(~blocked)
-        some = whole._replace(pieces=np.ascontiguousarray(whole.pieces[first:first + MOST_PIECES]))
-        blocked[rest] = _find(scene, some, places[rest], axes[axis[rest]])
-    return blocked
-
-
-def _find(scene: ReachScene, tool: ReachTool, places: Array, axes: Array) -> Bools:
-    blocked, room = np.zeros(len(places), dtype=bool), ReachRoom.make()
-    for first in range(0, len(places), _AT_ONCE):
+def _find(scene: ReachScene, tool: ReachTool, all_: ReachTips) -> Bools:
+    blocked, room = np.zeros(len(all_.place), dtype=bool), ReachRoom.make()
+    for first in range(0, len(blocked), _AT_ONCE):
         breathe()
         some = slice(first, first + _AT_ONCE)
-        find_blocked(scene.tree, tool, places[some], axes[some], room, blocked[some])
+        find_blocked(scene.tree, tool, all_.pick(some), room, blocked[some])
     return blocked

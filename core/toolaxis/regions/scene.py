@@ -123,7 +123,11 @@ class ReachScene:
         limits[held, _ABOVE] = limits[held, COMPONENTS.index(name)]
         radius = tool.profile.top_radius if top is None else float(top[top[:, 1] == top[-1, 1], 0].max())
         above = [radius, 0.0, 1.0, 0.0, tool.height, tool.height + self._extent, radius, _ABOVE]
-        return ReachTool(np.vstack([tool.pieces, above]), limits)
+        cutter = limits[:-1, :1]
+        # Where the cutter need not keep off a face, what is known of it there says nothing of the others.
+        further = np.where(np.isfinite(limits[:-1]), limits[:-1] - cutter, 0.0).max(axis=0, initial=0.0)
+        margin = float(np.abs(cutter[np.isfinite(cutter)]).max(initial=0.0))
+        return ReachTool(np.vstack([tool.pieces, above]), limits, further, margin)
 
     @property
     def _extent(self) -> float:

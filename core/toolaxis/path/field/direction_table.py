@@ -18,8 +18,9 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: Directions in half a turn at which widths are taken, and the highest harmonic of twice the angle that is kept of what
-#: the form of second degree does not tell.
+#: the form of second degree does not tell; the same of ball ends, whose form hardly misses anything.
 _DIRECTIONS, _HARMONICS = 12, 4
+_OF_BALL = 6, 2
 #: The least value of a form, as a share of the square of the least width that was found.
 _POSITIVE = 0.5
 #: Strips narrower than this share of the widest at a place, or of the scallop height, count as so wide: series of
@@ -161,16 +162,17 @@ def tabulate_directions(face: Face, cut: Cut, count: int, *, only_inside: bool =
     area = areas_of_places(face, uv, count)
     if only_inside:
         uv, area = uv[area > 0], area[area > 0]
-    angles = np.arange(_DIRECTIONS) * np.pi / _DIRECTIONS
+    directions, harmonics = (_DIRECTIONS, _HARMONICS) if cut.tool.flat_radius > 0 else _OF_BALL
+    angles = np.arange(directions) * np.pi / directions
     frame = feed_frame(face, uv)
-    halves = strip_width(face, cut.tool, np.repeat(uv, _DIRECTIONS, axis=0), cut.axis, cut.scallop,
+    halves = strip_width(face, cut.tool, np.repeat(uv, directions, axis=0), cut.axis, cut.scallop,
                          feeds_in(frame, angles), cut.allowance)
-    width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), _DIRECTIONS)
+    width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), directions)
     width = np.minimum(width, cut.greatest_step_over)
     widest = width.max(axis=1)
     least = np.maximum(_NARROW * widest, _NARROWEST * cut.scallop)[:, None]
-    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles),
-                          _fit(_tip_ways(face, cut, uv, angles), angles),
+    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles, harmonics),
+                          _fit(_tip_ways(face, cut, uv, angles), angles, harmonics),
                           bool((widest[area > 0] > _NARROWEST * cut.scallop).all()))
 
 
@@ -286,7 +288,7 @@ def _degree_two(angles: Array) -> Array:
     return np.stack([np.ones(len(angles)), np.cos(2 * angles), np.sin(2 * angles)])
 
 
-def _fit(values: Array, angles: Array) -> DirectionFunction:
+def _fit(values: Array, angles: Array, harmonics: int) -> DirectionFunction:
     """Positive values (n, k) at even directions over half a turn, as a function of the direction."""
     square = values**2
     terms = _degree_two(angles)
@@ -298,6 +300,6 @@ def _fit(values: Array, angles: Array) -> DirectionFunction:
     form[:, 0] = np.maximum(form[:, 0], 2 * least)
     form[:, 1:] *= np.minimum(1.0, (form[:, 0] - least) / np.maximum(swing, np.finfo(float).tiny))[:, None]
     left = np.log(values) - 0.5 * np.log(form @ terms)
-    turns = np.fft.rfft(left, axis=1)[:, :_HARMONICS + 1] / values.shape[1]
+    turns = np.fft.rfft(left, axis=1)[:, :harmonics + 1] / values.shape[1]
     turns[:, 1:] *= 2
     return DirectionFunction(form, np.ascontiguousarray(turns.real), np.ascontiguousarray(-turns.imag))
