@@ -111,16 +111,18 @@ class Canvas:
             Red, green and blue, 0 to 1.
         """
         flat = self.camera.project(points)
-        place = np.floor((flat[:, :2] - self.camera.low) / self.camera.pixel).astype(np.int64)
+        column, row = (np.floor((flat[:, k] - self.camera.low[k]) / self.camera.pixel).astype(np.int64) for k in (0, 1))
         rows, columns = self.camera.shape
-        seen = (place >= 0).all(axis=1) & (place[:, 0] < columns) & (place[:, 1] < rows)
-        cell, depth = place[seen, 1] * columns + place[seen, 0], flat[seen, 2]
-        light = 0.45 + 0.55 * np.abs(self._lit(directions[seen]))
-        order = np.lexsort((depth, cell))
-        last = order[np.append(np.flatnonzero(np.diff(cell[order])), len(order) - 1)] if len(order) else order
-        front = last[depth[last] > self.depth.reshape(-1)[cell[last]]]
-        self.depth.reshape(-1)[cell[front]] = depth[front]
-        self.colour.reshape(-1, 3)[cell[front]] = light[front, None] * np.asarray(colour)
+        seen = np.flatnonzero((column >= 0) & (row >= 0) & (column < columns) & (row < rows))
+        cell, depth = row[seen] * columns + column[seen], flat[seen, 2]
+        before = self.depth.reshape(-1)
+        nearest = before.copy()
+        np.maximum.at(nearest, cell, depth)
+        # Of points that lie equally near in one pixel the last one is seen.
+        front = np.flatnonzero((depth == nearest[cell]) & (depth > before[cell]))
+        light = 0.45 + 0.55 * np.abs(self._lit(directions[seen[front]]))
+        before[cell[front]] = depth[front]
+        self.colour.reshape(-1, 3)[cell[front]] = light[:, None] * np.asarray(colour)
 
     def close(self) -> None:
         """Fill single pixels that splats have missed from their neighbours."""
