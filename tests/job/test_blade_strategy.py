@@ -48,6 +48,7 @@ def test_the_judge_passes_it_and_knows_what_is_left_at_the_root(plan):
     assert found.passed, found.reasons
 
 
+@pytest.mark.parametrize("plan", ["blade-keys", pytest.param("blade", marks=pytest.mark.long)], indirect=True)
 def test_its_pictures_show_the_plane_and_the_axes(plan, tmp_path):
     draw_plan(plan, tmp_path)
     names = {path.name for path in tmp_path.iterdir()}

@@ -10,6 +10,7 @@ from toolaxis.errors import Cancelled, JobError
 from toolaxis.job.output import pictures
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
+from toolaxis.verify.verdict import Verdict
 
 
 def sheet(x: float) -> ta.Face:
@@ -23,25 +24,30 @@ def made() -> Plan:
     return ta.plan([sheet(0.0), sheet(40.0), sheet(80.0)], "ball:12", 0.2, machine="cone:0,0,1,10", workers=1)
 
 
+@pytest.fixture(scope="module")
+def judged(made: Plan) -> Verdict:
+    return ta.verify(made, spacing=1.0)
+
+
 def images(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def test_any_number_of_processes_draws_the_same(made: Plan, tmp_path: Path) -> None:
+def test_any_number_of_processes_draws_the_same(made: Plan, judged: Verdict, tmp_path: Path) -> None:
     drawn = []
     for workers in (1, 2):
         folder = tmp_path / str(workers)
         folder.mkdir()
-        pictures.draw_plan(made, folder, workers=workers)
+        pictures.draw_verdict(made, judged, folder, workers=workers)
         drawn.append(images(folder))
     assert drawn[0] == drawn[1]
-    assert {f"{op.name}-passes.png" for op in made.operations} < set(drawn[0])
+    assert drawn[0].keys() == {f"{op.name}-verdict.png" for op in made.operations}
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_what_cannot_be_drawn_costs_no_other_picture(made: Plan, tmp_path: Path, workers: int,
+def test_what_cannot_be_drawn_costs_no_other_picture(made: Plan, tmp_path: Path,
                                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    first, second, _ = made.operations
+    """Of a plan, and the others are the same with one process and two."""
+    first, *others = made.operations
     usual = pictures.operation_picture
 
     def fail(plan: Plan, op: object) -> object:
@@ -50,14 +56,20 @@ def test_what_cannot_be_drawn_costs_no_other_picture(made: Plan, tmp_path: Path,
         return usual(plan, op)
 
     monkeypatch.setattr(pictures, "operation_picture", fail)
-    with pytest.raises(JobError, match=f"drawing, {first.name}: failed: ZeroDivisionError: no width"):
-        pictures.draw_plan(made, tmp_path, workers=workers)
-    names = set(images(tmp_path))
-    assert f"{second.name}-passes.png" in names and not any(name.startswith(first.name) for name in names)
+    drawn = []
+    for workers in (1, 2):
+        folder = tmp_path / str(workers)
+        folder.mkdir()
+        with pytest.raises(JobError, match=f"drawing, {first.name}: failed: ZeroDivisionError: no width"):
+            pictures.draw_plan(made, folder, workers=workers)
+        drawn.append(images(folder))
+    assert drawn[0] == drawn[1]
+    assert {f"{op.name}-passes.png" for op in others} < drawn[0].keys()
+    assert not any(name.startswith(first.name) for name in drawn[0])
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_a_stop_leaves_whole_pictures_only(made: Plan, tmp_path: Path, workers: int) -> None:
+def test_a_stop_leaves_whole_pictures_only(made: Plan, judged: Verdict, tmp_path: Path, workers: int) -> None:
     asked = []
 
     def stop() -> bool:
@@ -65,7 +77,7 @@ def test_a_stop_leaves_whole_pictures_only(made: Plan, tmp_path: Path, workers: 
         return any(tmp_path.glob("op*.png"))
 
     with pytest.raises(Cancelled):
-        pictures.draw_plan(made, tmp_path, Progress(None, stop), workers=workers)
+        pictures.draw_verdict(made, judged, tmp_path, Progress(None, stop), workers=workers)
     assert asked and all(path.is_file() for path in tmp_path.iterdir()), "no folder stays"
     for image in images(tmp_path).values():
         assert image.startswith(b"\x89PNG") and image.endswith(b"IEND\xaeB`\x82")
