@@ -198,9 +198,10 @@ def test_a_wrong_number_of_workers_is_refused(workers):
 
 @several
 def test_a_plan_is_the_same_with_one_process_and_two():
-    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 30, 5), indexing="ij")
-    face = ta.Face.from_bspline(np.stack([x, y, 2 * np.sin(x / 15) * np.cos(y / 13)], axis=-1))
-    plans = [ta.plan(face, ta.Tool.ball(8), scallop=0.3, regions=2, workers=workers) for workers in (1, 2)]
+    x, y = np.meshgrid(np.linspace(0, 20, 4), np.linspace(0, 15, 4), indexing="ij")
+    face = ta.Face.from_bspline(np.stack([x, y, np.sin(x / 8) * np.cos(y / 7)], axis=-1))
+    plans = [ta.plan(face, ta.Tool.ball(8), scallop=0.3, regions=2, limits="cone:0,0,1,5", workers=workers)
+             for workers in (1, 2)]
     one, two = ([(op.number, op.face.label, op.orientation.axis.tolist(), op.orientation.length)
                  for op in plan.operations] for plan in plans)
     assert one == two and len(one) == 2

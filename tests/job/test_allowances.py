@@ -23,6 +23,7 @@ from toolaxis.tolerances import Tolerance
 
 LEFT = 0.3
 BALL = ta.Tool.ball(6, flute_length=12, stickout=40)
+_PLANNED: dict[str, Plan] = {}
 
 
 def plate(corner: tuple[float, ...], one: tuple[float, ...], two: tuple[float, ...]) -> ta.Face:
@@ -43,8 +44,12 @@ def step() -> ta.Part:
 
 
 def plan_step(on: object, faces: object = (1,), **more: object) -> Plan:
-    return ta.plan(step(), BALL, 0.05, faces=list(faces), allowance_on=on, workers=1,  # type: ignore[call-overload]
-                   limits="cone:0,0,1,40", **more)
+    """The plan of some of its faces; a plan that several tests look at is made once."""
+    told = repr((on, faces, sorted(more.items())))
+    if told not in _PLANNED:
+        _PLANNED[told] = ta.plan(step(), BALL, 0.05, faces=list(faces), allowance_on=on,  # type: ignore[call-overload]
+                                 workers=1, limits="cone:0,0,1,40" if 2 in faces else "cone:0,0,1,10", **more)
+    return _PLANNED[told]
 
 
 def lowest(plan: Plan, point: tuple[float, float, float], normal: tuple[float, float, float]) -> float:

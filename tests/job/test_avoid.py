@@ -19,6 +19,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.tolerances import Tolerance
 
 CLEAR = Tolerance().cutter_clearance
+SCALLOP, LIMITS = 0.3, "cone:0,0,1,4"
 
 
 def strip(x0: float, x1: float, bend: float = 0.0) -> ta.Face:
@@ -37,7 +38,7 @@ def pair(bend: float = 0.0) -> ta.Part:
 
 
 def made(tool: ta.Tool, bend: float = 0.0, **more: object) -> Plan:
-    return ta.plan(pair(bend), tool, 0.1, faces=[1], avoid=[2], limits="cone:0,0,1,20", **more)
+    return ta.plan(pair(bend), tool, SCALLOP, faces=[1], avoid=[2], limits=LIMITS, **more)
 
 
 def written(plan: Plan, folder: Path) -> Path:
@@ -118,7 +119,7 @@ def test_the_judge_passes_the_plan_and_measures_the_clearance(beside_seam: Plan)
 
 def test_a_plan_made_without_is_refused_by_the_judge(beside_seam: Plan, tmp_path: Path) -> None:
     """The judge goes by plan.json: passes up to the seam touch the face beyond it."""
-    plain = ta.plan(pair(), BALL, 0.1, faces=[1], limits="cone:0,0,1,20")
+    plain = ta.plan(pair(), BALL, 0.1, faces=[1], limits=LIMITS)
     assert ta.verify(plain).passed
     read = read_plan(written(replace(plain, inputs=replace(plain.inputs, avoid=(2,))), tmp_path / "plan"))
     assert read.part.avoided == (2,)
@@ -142,11 +143,11 @@ def test_a_torus_keeps_clear_of_what_rises_and_of_what_falls(bend: float) -> Non
 
 def test_an_avoided_face_behind_a_convex_edge_is_kept_clear_of() -> None:
     cq = pytest.importorskip("cadquery")
-    part = ta.load(cq.Workplane().box(20, 16, 10))
+    part = ta.load(cq.Workplane().box(14, 10, 10))
     top = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(2, 2)).point[:, 2], 5))
-    side = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(2, 2)).point[:, 0], 10))
-    plain = ta.plan(part, FLAT, 0.1, faces=[top.number], limits="cone:0,0,1,20")
-    kept = ta.plan(part, FLAT, 0.1, faces=[top.number], avoid=[side.number], limits="cone:0,0,1,20")
+    side = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(2, 2)).point[:, 0], 7))
+    plain = ta.plan(part, FLAT, SCALLOP, faces=[top.number], limits=LIMITS)
+    kept = ta.plan(part, FLAT, SCALLOP, faces=[top.number], avoid=[side.number], limits=LIMITS)
     assert not plain.operations[0].zones
     (zone,) = kept.operations[0].zones
     assert zone.avoided == (side.label,) and zone.at_wall
@@ -167,7 +168,7 @@ def test_plan_json_carries_the_faces_and_reads_them_back(beside_seam: Plan, tmp_
 
 
 def test_a_rack_keeps_clear_too_and_tells_what_stays() -> None:
-    plan = ta.plan(pair(), [BALL, ta.Tool.ball(diameter=4, stickout=30)], 0.1, avoid="2", limits="cone:0,0,1,20")
+    plan = ta.plan(pair(), [BALL, ta.Tool.ball(diameter=4, stickout=30)], SCALLOP, avoid="2", limits=LIMITS)
     assert {op.face.number for op in plan.operations} == {1} and any(op.done for op in plan.operations)
     assert {label for op in plan.operations for zone in op.zones for label in zone.avoided} == {"2"}
     verdict = ta.verify(plan)

@@ -17,6 +17,8 @@ TOOL, SCALLOP = "torus:6x1", 0.3
 LEFT = (np.array([[0.0, 0.0], [0.45, 0.0], [0.45, 1.0], [0.0, 1.0]]),)
 RIGHT = (np.array([[0.45, 0.0], [1.0, 0.0], [1.0, 1.0], [0.45, 1.0]]),)
 LEANING = np.array([0.2, 0.1, 1.0])
+#: Few axes to choose from, where the division is what is looked at.
+NEAR = "cone:0.2,0.1,1,12"
 
 
 def wavy() -> ta.Part:
@@ -31,7 +33,7 @@ def planned(*division: ta.SubSurface, **more: object) -> Plan:
 @pytest.fixture(scope="module")
 def halves() -> Plan:
     """The left half with a locked axis and feed, the right one free but for its feed."""
-    return planned(ta.SubSurface(1, LEFT, LEANING, "v", locked=True), ta.SubSurface(1, RIGHT, feed="v"))
+    return planned(ta.SubSurface(1, LEFT, LEANING, "v", locked=True), ta.SubSurface(1, RIGHT, feed="v"), limits=NEAR)
 
 
 def test_borders_axes_and_feeds_are_kept(halves: Plan) -> None:
@@ -51,7 +53,7 @@ def test_the_judge_passes_what_is_given_by_hand(halves: Plan) -> None:
 
 def test_the_feed_is_the_one_asked_for(halves: Plan) -> None:
     """Also where the other one is better, as here."""
-    found = planned(ta.SubSurface(1, RIGHT, feed="u")).operations[0].orientation
+    found = planned(ta.SubSurface(1, RIGHT, feed="u"), limits=NEAR).operations[0].orientation
     assert found.feed == "u" and found.length < 0.9 * halves.operations[1].orientation.length
 
 
@@ -120,7 +122,7 @@ def test_a_plan_is_a_division_and_comes_out_no_worse(halves: Plan, tmp_path: Pat
     """Its axes are kept; feeds that were locked there are free."""
     write_plan(halves, tmp_path)
     given = division_from(json.loads((tmp_path / "plan.json").read_text()))
-    again = planned(*given)
+    again = planned(*given, limits=NEAR)
     for ours, theirs in zip(again.operations, halves.operations, strict=True):
         assert ours.orientation.length <= 1.001 * theirs.orientation.length
         assert ours.orientation.axis == pytest.approx(theirs.orientation.axis, abs=1e-9)

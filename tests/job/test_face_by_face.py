@@ -20,7 +20,7 @@ from toolaxis.report.warnings import warnings_of
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.skin.join import join, take_apart
 
-TOOL, HEIGHT = "ball:8", 0.2
+TOOL, HEIGHT, LIMITS = "ball:8", 0.2, "cone:0,0,1,5"
 
 
 def strip(rough: tuple[float, float], cuts: Sequence[float], length: float = 36.0) -> list[ta.Face]:
@@ -49,7 +49,7 @@ def one_bad() -> ta.Part:
 
 
 def planned(faces: object, workers: int = 1, **more: object) -> Plan:
-    return ta.plan(one_bad(), TOOL, HEIGHT, faces=faces, workers=workers, **more)
+    return ta.plan(one_bad(), TOOL, HEIGHT, faces=faces, limits=LIMITS, workers=workers, **more)
 
 
 @pytest.fixture(scope="module")
@@ -113,8 +113,8 @@ def test_any_number_of_processes_takes_a_skin_apart_alike(apart: Plan) -> None:
 def test_a_skin_machines_no_less_than_its_faces(rough: tuple[float, float], cuts: tuple[float, ...]) -> None:
     part = ta.Part.from_faces(strip(rough, cuts))
     numbers = [face.number for face in part.faces]
-    whole = ta.plan(part, TOOL, HEIGHT, faces=[tuple(numbers)], workers=1)
-    single = ta.plan(part, TOOL, HEIGHT, faces=numbers, workers=1)
+    whole = ta.plan(part, TOOL, HEIGHT, faces=[tuple(numbers)], limits=LIMITS, workers=1)
+    single = ta.plan(part, TOOL, HEIGHT, faces=numbers, limits=LIMITS, workers=1)
     area = sum(face.area for face in part.faces)
     assert area_machined(whole.operations) >= area_machined(single.operations) - 0.01 * area
     assert sum(op.face.area for op in whole.operations) == pytest.approx(area, rel=1e-4)

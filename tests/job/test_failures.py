@@ -30,7 +30,7 @@ FORKED = pytest.param(2, marks=pytest.mark.skipif(check_workers(2) == 1, reason=
 
 def sheets(count: int = 3) -> Part:
     """Wavy sheets of 9 x 6 mm beside each other."""
-    x, y = np.meshgrid(np.linspace(0, 9, 5), np.linspace(0, 6, 5), indexing="ij")
+    x, y = np.meshgrid(np.linspace(0, 9, 4), np.linspace(0, 6, 4), indexing="ij")
     z = 0.4 * np.sin(x / 6) * np.cos(y / 5)
     return Part.from_faces([ta.Face.from_bspline(np.stack([x + 40 * k, y, z], axis=-1)) for k in range(count)])
 

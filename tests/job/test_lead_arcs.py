@@ -128,12 +128,13 @@ def test_the_judge_fails_arcs_that_are_none(climbing: Plan) -> None:
         "meets its pass at": lambda arc, end: end + _turned(arc - end, 3.0, (0, 1)),
         "from the surface's normal, and has to lie in its plane": lambda arc, end: end + _turned(arc - end, 30.0, None)}
     for said, change in planted.items():
-        found = [why for why in ta.verify(with_entry(climbing, change)).reasons if "lead-in at point" in why]
+        verdict = ta.verify(with_entry(climbing, change), spacing=2.0)
+        found = [why for why in verdict.reasons if "lead-in at point" in why]
         assert len(found) == 1 and said in found[0], (said, found)
         german = translate(found[0], "german")
         assert "Einlauf an Punkt" in german and "lead" not in german
     # One of another radius in plan.json.
-    asked = ta.verify(replace(climbing, inputs=replace(climbing.inputs, lead=3.0)))
+    asked = ta.verify(replace(climbing, inputs=replace(climbing.inputs, lead=3.0)), spacing=2.0)
     assert any("has a radius of 2.000 mm, and 3 mm are asked for" in why for why in asked.reasons)
     # An arc that dips into the face is a gouge as any motion is.
     low = ta.verify(with_entry(climbing, lambda arc, end: arc - np.array([0, 0, 0.2]) + 0.3 * (end - arc)))

@@ -27,12 +27,14 @@ LEAN = radians(12)
 
 
 def hill(height: float = 2.0) -> ta.Face:
-    x, y = np.meshgrid(np.linspace(0, 30, 6), np.linspace(0, 24, 6), indexing="ij")
-    return ta.Face.from_bspline(np.stack([x, y, height * np.sin(np.pi * x / 30) * np.sin(np.pi * y / 24)], -1))
+    """Of 15 times its height along and 12 times across, so that all hills are as steep."""
+    x, y = np.meshgrid(np.linspace(0, 15 * height, 6), np.linspace(0, 12 * height, 6), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, height * np.sin(np.pi * x / 15 / height)
+                                          * np.sin(np.pi * y / 12 / height)], -1))
 
 
-def plan_hill(lean: float, tool: str | ta.Tool = "ball:8", **more: object) -> Plan:
-    return ta.plan(hill(), tool, 0.1, workers=1, least_lean=lean, **more)  # type: ignore[arg-type]
+def plan_hill(lean: float, tool: str | ta.Tool = "ball:8", height: float = 2.0, **more: object) -> Plan:
+    return ta.plan(hill(height), tool, 0.1, workers=1, least_lean=lean, **more)  # type: ignore[arg-type]
 
 
 def asked_afterwards(plan: Plan, lean: float) -> Plan:
@@ -141,7 +143,7 @@ def test_passes_that_do_not_lean_enough_are_refused_as_they_were_made() -> None:
 
 
 def test_4_plus_1_axes_lean_too() -> None:
-    made = plan_hill(LEAN, strategy="four-plus-one", machine="mikron-ucp-710")
+    made = plan_hill(LEAN, height=1.0, strategy="four-plus-one", machine="mikron-ucp-710")
     assert made.outcome == "complete"
     assert leans_by_force(made, 4.0).min() >= LEAN - radians(0.3)
     assert ta.verify(made).passed

@@ -91,9 +91,9 @@ def test_a_closed_ring_is_as_wide_as_from_border_to_border() -> None:
     assert mean_width(ring) == pytest.approx(2.0, rel=0.05)
 
 
-def post(fillet: float) -> ta.Part:
+def post(fillet: float, length: float = 36, width: float = 30) -> ta.Part:
     cq = pytest.importorskip("cadquery")
-    return ta.load(cq.Workplane().box(36, 30, 10).faces(">Z").workplane().circle(4).extrude(12)
+    return ta.load(cq.Workplane().box(length, width, 10).faces(">Z").workplane().circle(4).extrude(12)
                    .edges(cq.selectors.BoxSelector((-5, -5, 4.5), (5, 5, 5.5))).fillet(fillet))
 
 
@@ -126,9 +126,10 @@ def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_p
 @pytest.mark.parametrize(("radius", "cutter", "left"), [(2.0, 8, True), (2.0, 3.8, False)])
 def test_a_fillet_tighter_than_the_cutter_is_left_where_no_axis_was_found(radius: float, cutter: float,
                                                                           left: bool) -> None:
-    part = post(radius)
+    part = post(radius, 24, 20)
     fillet = next(face for face in part.faces if face.kind == "torus")
-    plan = ta.plan(part, ta.Tool.torus(cutter, 0.5, stickout=30), 0.1, faces=[fillet.number], regions=1)
+    plan = ta.plan(part, ta.Tool.torus(cutter, 0.5, stickout=30), 0.1, faces=[fillet.number], regions=1,
+                   limits="cone:0,0,1,20")
     (op,) = plan.operations
     assert plan.outcome == "incomplete" and op.left == left and not op.done
     assert ("fillet of 2.00 mm radius, tighter than the cutter's 4 mm" in op.orientation.reasons[0]) == left
