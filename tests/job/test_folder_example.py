@@ -24,11 +24,11 @@ def carried_out(folder: Path) -> list[str]:
 
 def test_a_folder_of_step_files_is_planned_in_under_thirty_lines(tmp_path: Path) -> None:
     cadquery = pytest.importorskip("cadquery")
-    x, y = np.linspace(0, 8, 4), np.linspace(0, 6, 4)
+    x, y = np.linspace(0, 16, 5), np.linspace(0, 12, 5)
     for name, height in (("flat", 1.0), ("round", 1.5)):
         rows = [[cadquery.Vector(a, b, height * np.sin(a / 9) * np.cos(b / 11)) for b in y] for a in x]
         top = cadquery.Face.makeSplineApprox(rows, tol=1e-3, minDeg=3, maxDeg=3)
-        table = cadquery.Face.makePlane(60, 60, (4, 3, -20), (0, 0, 1))
+        table = cadquery.Face.makePlane(60, 60, (8, 6, -20), (0, 0, 1))
         cadquery.exporters.export(cadquery.Workplane(obj=cadquery.Compound.makeCompound([table, top])),
                                   str(tmp_path / f"{name}.step"))
     assert len(SCRIPT.read_text().splitlines()) < 30

@@ -10,17 +10,17 @@ from toolaxis.job.files.plan_folder import read_plan, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.plan.plan import Plan
 
-TOOL, MACHINE = "torus:8x1", "mikron-ucp-710"
+TOOL, MACHINE = "torus:12x1", "mikron-ucp-710"
 
 
 def _face() -> ta.Face:
-    x, y = np.meshgrid(np.linspace(0, 16, 4), np.linspace(0, 10, 4), indexing="ij")
-    return ta.Face.from_bspline(np.stack([x, y, 0.02 * (x - 8) ** 2 - 0.02 * (y - 5) ** 2], axis=-1))
+    x, y = np.meshgrid(np.linspace(0, 36, 5), np.linspace(0, 22, 5), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 0.012 * (x - 18) ** 2 - 0.012 * (y - 11) ** 2], axis=-1))
 
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return ta.plan(_face(), TOOL, 0.2, strategy="four-plus-one", machine=MACHINE, workers=1)
+    return ta.plan(_face(), TOOL, 0.1, strategy="four-plus-one", machine=MACHINE, workers=1)
 
 
 def test_the_judge_passes_it_and_the_machine_times_it(plan) -> None:
