@@ -217,13 +217,19 @@ def test_a_face_of_a_hundred_small_facets_is_left_in_one_sentence() -> None:
     assert len(smooth_pieces([facets], ta.Tool.ball(1))) == 20
 
 
+def two_small_faces() -> list[ta.Face]:
+    """For what plans them again and again."""
+    one, other = (net(height, 4, 4, (12.0, 8.0)) for height in (1.0, 1.2))
+    return [ta.Face.from_bspline(one), ta.Face.from_bspline(other + np.array([0.0, 40.0, 0.0]))]
+
+
 def test_other_methods_are_planned_beside_with_the_same_proofs(tmp_path: Path,
                                                                monkeypatch: pytest.MonkeyPatch) -> None:
     from toolaxis.job.planning import comparison as baselines
 
     assert baselines.BY_SUB_SURFACE == ("sectors", "roman", "normal")
     monkeypatch.setattr(baselines, "BY_SUB_SURFACE", ("roman", "normal"))  # sectors take half a minute
-    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
+    faces = two_small_faces()
     made = ta.plan(ta.Part.from_faces(faces), ta.Tool.torus(12, 1, stickout=50, holder=[(10, 0), (10, 40)]), 0.1,
                    machine="cone:0,0,1,12", compare=True, feedrate=500)
     rows = {one.method: one for one in made.baselines}
@@ -252,7 +258,7 @@ def test_iso_parametric_passes_stand_beside_those_in_a_field(monkeypatch: pytest
 
 @pytest.mark.parametrize("method", ["one", "ball"])
 def test_the_plan_of_a_baseline_is_a_plan_that_passes(method: str) -> None:
-    faces = [ta.Face.from_bspline(net(1.0)), ta.Face.from_bspline(net(1.2) + np.array([0.0, 40.0, 0.0]))]
+    faces = two_small_faces()
     made = ta.plan(ta.Part.from_faces(faces), "torus:12x1", 0.1, method=method, limits="cone:0,0,1,12")
     assert made.outcome == "complete" and made.inputs.method == method
     assert made.tools[0].name == ("ball:12" if method == "ball" else "torus:12x1")

@@ -29,8 +29,8 @@ def plate(corner: tuple[float, ...], one: tuple[float, ...], two: tuple[float, .
 
 def slot() -> ta.Part:
     """A floor 1 mm wide between two walls that a shank of radius 4 clears by 0.2 mm at the floor's borders."""
-    walls = plate((-4.7, -10, 5), (0, 50, 0), (0, 0, 35)), plate((4.7, -10, 5), (0, 0, 35), (0, 50, 0))
-    return ta.Part.from_faces([plate((-0.5, 0, 0), (1, 0, 0), (0, 30, 0)), *walls])
+    walls = plate((-4.7, -10, 5), (0, 32, 0), (0, 0, 20)), plate((4.7, -10, 5), (0, 0, 20), (0, 32, 0))
+    return ta.Part.from_faces([plate((-0.5, 0, 0), (1, 0, 0), (0, 12, 0)), *walls])
 
 
 def hill(height: float = 3.0) -> ta.Face:
@@ -89,9 +89,14 @@ def test_a_holder_over_stock_is_found_by_the_judge() -> None:
     assert any("holder is" in why and "9 mm of stock may stand, needed 10 mm" in why for why in found.reasons)
 
 
+def knoll() -> ta.Face:
+    x, y = np.meshgrid(np.linspace(0, 15, 6), np.linspace(0, 12, 6), indexing="ij")
+    return ta.Face.from_bspline(np.stack([x, y, 1.5 * np.sin(np.pi * x / 15) * np.sin(np.pi * y / 12)], -1))
+
+
 def plan_hill(stock: float, more: dict[str, str]) -> Plan:
     tool = ta.Tool.torus(8, 1, flute_length=16, stickout=50, holder=[(10, 0), (10, 40)])
-    return ta.plan(hill(), tool, 0.2, stock=stock, workers=1, **more)
+    return ta.plan(knoll(), tool, 0.2, stock=stock, workers=1, **more)
 
 
 @pytest.fixture(scope="module", params=[{}, {"strategy": "sturz"}], ids=["fixed", "sturz"])
