@@ -289,8 +289,15 @@ def assert_one_sentence(message, path):
     assert "Traceback" not in message and "Error" not in message
 
 
-@pytest.mark.parametrize("variant", REFUSED)
-@pytest.mark.parametrize("step", [*OWN, *OTHERS], indirect=True)
+def often(step, k):
+    """A part and the k-th variant: all of one own part, and of the others one for each variant, in turn."""
+    rest = (*OWN[1:], *OTHERS)
+    return step == OWN[0] or step == rest[k % len(rest)]
+
+
+@pytest.mark.parametrize("step, variant", [
+    pytest.param(step, variant, marks=() if often(step, k) else pytest.mark.long)
+    for step in (*OWN, *OTHERS) for k, variant in enumerate(REFUSED)], indirect=["step"])
 def test_what_is_refused_says_why_in_one_sentence(step, variant, tmp_path, quick_kernel):
     change, said = REFUSED[variant]
     path = written(change(step), tmp_path)
@@ -355,8 +362,9 @@ def command(capsys, *words):
 @pytest.mark.parametrize("variant", [
     "cut in the middle", "header alone", "binary", "packed", "NaN", "1E400", "letters", "everything twice",
     "an unknown unit", "a dangling edge", "a loop in itself", "a face without loops", "knots that fall"])
-@pytest.mark.parametrize("verb", ["inspect", "plan"])
-@pytest.mark.parametrize("step", ["saddle", "nacelle.stp"], indirect=True)
+@pytest.mark.parametrize("step, verb", [
+    ("saddle", "plan"), ("saddle", "inspect"), pytest.param("nacelle.stp", "plan", marks=pytest.mark.long),
+    pytest.param("nacelle.stp", "inspect", marks=pytest.mark.long)], indirect=["step"])
 def test_the_command_says_the_same_and_writes_nothing(step, verb, variant, tmp_path, quick_kernel, capsys):
     change, said = REFUSED[variant]
     path = written(change(step), tmp_path)

@@ -217,7 +217,7 @@ def check(seed, count=4, height=15):
     assert abs(found - wanted) * (100.0 if steps else 1.0) <= 1e-4 + 1e-4 * wanted, (seed, found, wanted)
 
 
-@pytest.mark.parametrize("batch", [*range(3), *(pytest.param(k, marks=pytest.mark.long) for k in range(3, BATCHES))])
+@pytest.mark.parametrize("batch", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, BATCHES))])
 def test_random_cases_agree_with_brute_force(batch):
     for seed in range(batch * CASES // BATCHES, (batch + 1) * CASES // BATCHES):
         check(seed)

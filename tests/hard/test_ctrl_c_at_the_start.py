@@ -26,7 +26,8 @@ command()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
-@pytest.mark.parametrize("wait", [0.0, 0.02, 0.05, 0.1, 0.2, 0.5])
+@pytest.mark.parametrize("wait", [
+    0.0, 0.05, 0.5, *(pytest.param(wait, marks=pytest.mark.long) for wait in (0.02, 0.1, 0.2))])
 def test_it_is_answered_in_a_line(wait: float, tmp_path: Path) -> None:
     pytest.importorskip("OCP")
     out = tmp_path / "out"

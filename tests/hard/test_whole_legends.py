@@ -12,10 +12,13 @@ from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.report.figures.plots import operation_picture, widths_picture
 from toolaxis.shape.part import Part
 
+BARE = ta.Tool.torus(diameter=12, corner_radius=1)
+HELD = ta.Tool.ball(diameter=8, stickout=40, holder=[(10, 0), (10, 40)])
 
-@pytest.mark.parametrize("size", [(90, 30), (30, 90), (40, 40)])
-@pytest.mark.parametrize("tool", [ta.Tool.torus(diameter=12, corner_radius=1),
-                                  ta.Tool.ball(diameter=8, stickout=40, holder=[(10, 0), (10, 40)])])
+
+@pytest.mark.parametrize("size, tool", [
+    ((90, 30), BARE), ((30, 90), HELD), *(pytest.param(*case, marks=pytest.mark.long) for case in (
+        ((30, 90), BARE), ((40, 40), BARE), ((90, 30), HELD), ((40, 40), HELD)))])
 def test_no_legend_leaves_the_picture(size, tool):
     axis, along = np.array([0.0, 0.0, 1.0]), np.linspace(0, 1, 20)
     face = ta.Face.from_bspline([[[x, y, 0] for y in (0, size[1])] for x in (0, size[0])], degree=(1, 1))

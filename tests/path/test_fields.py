@@ -198,7 +198,8 @@ def test_where_strips_change_slowly_no_narrow_place_is_hidden() -> None:
 
 def test_plans_in_a_field_pass_the_judge_and_the_shorter_is_taken(tmp_path: Path) -> None:
     part = ta.Part.from_faces([wavy(5, height=4.0)])
-    made = {passes: ta.plan(part, TORUS, 0.05, passes=passes) for passes in (ISO, FIELD, AUTO)}
+    made = {passes: ta.plan(part, TORUS, 0.05, passes=passes, limits="cone:0.2,0.3,0.9,10")
+            for passes in (ISO, FIELD, AUTO)}
     found = {passes: plan.operations[0].orientation for passes, plan in made.items()}
     assert all(plan.outcome == "complete" and ta.verify(plan).passed for plan in made.values())
     assert found[ISO].pattern == ISO and found[FIELD].pattern == FIELD
