@@ -18,9 +18,11 @@ from toolaxis.errors import Cancelled
 from toolaxis.search.sectors import sectors
 
 Capture = pytest.CaptureFixture[str]
-FAST = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
 #: Few axes to choose from, where each costs a search of its own.
 UPRIGHT = "--limits=cone:0,0,1,8"
+FAST = ("--tool=torus:12x1", "--scallop=0.1", UPRIGHT)
+#: What takes long enough to be stopped, and leaves other methods axes of their own.
+SLOW = ("--tool=torus:12x1", "--scallop=0.1", "--limits=cone:0,0,1,60")
 
 
 def strict(text: str) -> dict:
@@ -135,7 +137,7 @@ def test_other_methods_stand_beside_the_plan(sheet: Path, tmp_path: Path, capsys
     monkeypatch.setattr("toolaxis.job.planning.comparison.BY_SUB_SURFACE", ("roman",))
     monkeypatch.setattr("toolaxis.strategies.indexed.pictures.sectors", partial(sectors, roll=radians(60)))
     out = tmp_path / "out"
-    assert main(["plan", str(sheet), *FAST, "--faces=1", "--compare", "--feedrate=600", "--rapid=6000",
+    assert main(["plan", str(sheet), *SLOW, "--faces=1", "--compare", "--feedrate=600", "--rapid=6000",
                  "--out", str(out)]) == 0
     printed, _ = capsys.readouterr()
     assert "the same faces by other methods" in printed and "ball:12" in printed and "600 mm/min in the cut" in printed
@@ -179,7 +181,7 @@ def wait_for(process: subprocess.Popen[str], text: str, limit: float = 120.0) ->
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
 def test_a_stop_keeps_finished_faces_in_one_whole_plan(sheet: Path, tmp_path: Path, sign: signal.Signals) -> None:
-    process = start(["plan", str(sheet), *FAST, "--faces=1,2,3", "--workers=2", "--no-pictures",
+    process = start(["plan", str(sheet), *SLOW, "--faces=1,2,3", "--workers=2", "--no-pictures",
                      "--out", str(tmp_path / "out")])
     wait_for(process, "face 3 (3 of 3)")
     process.send_signal(sign)
