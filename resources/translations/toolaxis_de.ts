@@ -47,6 +47,10 @@
    <translation>Zurück</translation>
   </message>
   <message>
+   <source>Ball end D{}</source>
+   <translation>Kugelfräser D{}</translation>
+  </message>
+  <message>
    <source>Between the passes {}</source>
    <translation>Zwischen den Bahnen: {}</translation>
   </message>
@@ -57,6 +61,10 @@
   <message>
    <source>Cancel</source>
    <translation>Abbrechen</translation>
+  </message>
+  <message>
+   <source>Change of tool, and index move to {}</source>
+   <translation>Werkzeugwechsel, und Schwenkbewegung zu {}</translation>
   </message>
   <message>
    <source>Clean-up {}</source>
@@ -73,6 +81,10 @@
   <message>
    <source>Collisions could not be looked for: {}</source>
    <translation>Nach Kollisionen konnte nicht gesucht werden: {}</translation>
+  </message>
+  <message>
+   <source>Collisions: {} ({}).</source>
+   <translation>Kollisionen: {} ({}).</translation>
   </message>
   <message>
    <source>Copy details</source>
@@ -101,6 +113,10 @@
   <message>
    <source>Different axes: {}; sub-surfaces: {}; {}</source>
    <translation>Verschiedene Achsen: {}; Teilflächen: {}; {}</translation>
+  </message>
+  <message>
+   <source>Divide into sub-surfaces</source>
+   <translation>In Teilflächen teilen</translation>
   </message>
   <message>
    <source>Drawing</source>
@@ -187,6 +203,10 @@
    <translation>Abstand des Halters</translation>
   </message>
   <message>
+   <source>Index move to {}</source>
+   <translation>Schwenkbewegung zu {}</translation>
+  </message>
+  <message>
    <source>Inside tolerance</source>
    <translation>Innerhalb der Toleranz</translation>
   </message>
@@ -259,6 +279,14 @@
    <translation>Keine Achse ist frei.</translation>
   </message>
   <message>
+   <source>No collisions found.</source>
+   <translation>Keine Kollisionen gefunden.</translation>
+  </message>
+  <message>
+   <source>No limits</source>
+   <translation>Ohne Grenzen</translation>
+  </message>
+  <message>
    <source>No map: no axis was looked at.</source>
    <translation>Keine Karte: Es wurde keine Achse betrachtet.</translation>
   </message>
@@ -269,6 +297,10 @@
   <message>
    <source>No map: this axis was not looked for by itself. It is shared by sub-surfaces, given, or named by the method.</source>
    <translation>Keine Karte: Diese Achse wurde nicht für sich gesucht. Teilflächen haben sie gemeinsam, sie ist vorgegeben oder folgt aus dem Verfahren.</translation>
+  </message>
+  <message>
+   <source>Not checked: {}.</source>
+   <translation>Nicht geprüft: {}.</translation>
   </message>
   <message>
    <source>Not held by this machine: {}</source>
@@ -301,6 +333,10 @@
   <message>
    <source>On the way from {} to {}: {}</source>
    <translation>Auf dem Weg von {} nach {}: {}</translation>
+  </message>
+  <message>
+   <source>On {}</source>
+   <translation>Auf {}</translation>
   </message>
   <message>
    <source>One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits.</source>
@@ -367,6 +403,10 @@
    <translation>Das Teil wird gelesen</translation>
   </message>
   <message>
+   <source>Reading the passes</source>
+   <translation>Die Bahnen werden gelesen</translation>
+  </message>
+  <message>
    <source>Removing material</source>
    <translation>Material wird abgetragen</translation>
   </message>
@@ -413,6 +453,10 @@
   <message>
    <source>Stale: {}; plan it again</source>
    <translation>Überholt: {}; bitte neu planen</translation>
+  </message>
+  <message>
+   <source>Stick-out {}</source>
+   <translation>Auskraglänge {}</translation>
   </message>
   <message>
    <source>Stopped</source>
@@ -479,6 +523,10 @@
    <translation>Das Dokument wurde nicht verändert. Bitte melden Sie den Fehler mit den kopierten Einzelheiten und, wenn möglich, dem Teil.</translation>
   </message>
   <message>
+   <source>The machine is not shown: {}</source>
+   <translation>Die Maschine wird nicht gezeigt: {}</translation>
+  </message>
+  <message>
    <source>The map could not be drawn.</source>
    <translation>Die Karte konnte nicht gezeichnet werden.</translation>
   </message>
@@ -511,6 +559,10 @@
    <translation>Die Bilder können nicht geschrieben werden: {}</translation>
   </message>
   <message>
+   <source>The tool alone: choose a machine with Tool Axis &gt; Machine to see it and its index moves</source>
+   <translation>Nur das Werkzeug: mit Tool Axis &gt; Maschine eine Maschine wählen, um sie und ihre Schwenkbewegungen zu sehen</translation>
+  </message>
+  <message>
    <source>The verdict could not be kept: {}</source>
    <translation>Das Urteil konnte nicht aufbewahrt werden: {}</translation>
   </message>
@@ -525,6 +577,10 @@
   <message>
    <source>There is no planned operation to make a job of: select faces and run Plan Orientations first.</source>
    <translation>Es gibt keine geplante Operation für einen Auftrag: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to play: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation zum Abspielen: zuerst Flächen auswählen und Orientierungen planen.</translation>
   </message>
   <message>
    <source>There is no planned operation to recompute: select faces and run Plan Orientations first.</source>
@@ -647,6 +703,10 @@
    <translation>ausprobierte Achse</translation>
   </message>
   <message>
+   <source>bodies of the machine</source>
+   <translation>Körper der Maschine</translation>
+  </message>
+  <message>
    <source>cancelled</source>
    <translation>abgebrochen</translation>
   </message>
@@ -689,6 +749,14 @@
   <message>
    <source>general rack</source>
    <translation>allgemeines Magazin</translation>
+  </message>
+  <message>
+   <source>holder</source>
+   <translation>Halter</translation>
+  </message>
+  <message>
+   <source>index moves</source>
+   <translation>Schwenkbewegungen</translation>
   </message>
   <message>
    <source>infeasible (proven)</source>
@@ -763,8 +831,16 @@
    <translation>Vorauswahl</translation>
   </message>
   <message>
+   <source>shank</source>
+   <translation>Schaft</translation>
+  </message>
+  <message>
    <source>show it</source>
    <translation>zeigen</translation>
+  </message>
+  <message>
+   <source>show the next one</source>
+   <translation>die nächste zeigen</translation>
   </message>
   <message>
    <source>strip width</source>
@@ -871,6 +947,10 @@
    <translation>{} von {} Teilflächen</translation>
   </message>
   <message>
+   <source>{} of {}: cutting {}, moves {}</source>
+   <translation>{} von {}: Schnitt {}, Bewegungen {}</translation>
+  </message>
+  <message>
    <source>{} open</source>
    <translation>{} offen</translation>
   </message>
@@ -919,8 +999,24 @@
    <translation>{}. Angenommen: {}.</translation>
   </message>
   <message>
+   <source>{}: cutting, pass {} of {}</source>
+   <translation>{}: Schnitt, Bahn {} von {}</translation>
+  </message>
+  <message>
+   <source>{}: lead-in, pass {} of {}</source>
+   <translation>{}: Einlauf, Bahn {} von {}</translation>
+  </message>
+  <message>
+   <source>{}: lead-out, pass {} of {}</source>
+   <translation>{}: Auslauf, Bahn {} von {}</translation>
+  </message>
+  <message>
    <source>{}: left to clean-up</source>
    <translation>{}: Restmaterial</translation>
+  </message>
+  <message>
+   <source>{}: link, pass {} of {}</source>
+   <translation>{}: Verbindung, Bahn {} von {}</translation>
   </message>
   <message>
    <source>{}: no axis</source>
@@ -1037,6 +1133,14 @@
  <context>
   <name>ToolAxisMachine</name>
   <message>
+   <source>Collisions of cutter, shank, holder and machine with the part, clamps and each other, and gouges that Verify found.</source>
+   <translation>Kollisionen von Fräser, Schaft, Halter und Maschine mit dem Teil, Spannmitteln und untereinander, und Konturverletzungen, die Prüfen fand.</translation>
+  </message>
+  <message>
+   <source>How many times faster than the machine it is played.</source>
+   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
+  </message>
+  <message>
    <source>Look from the machine's bed</source>
    <translation>Vom Maschinenbett aus betrachten</translation>
   </message>
@@ -1049,8 +1153,8 @@
    <translation>Maschinen der Bibliothek, des in den Einstellungen genannten Ordners und von FreeCAD.</translation>
   </message>
   <message>
-   <source>Moves the machine from operation to operation.</source>
-   <translation>Bewegt die Maschine von Operation zu Operation.</translation>
+   <source>Moves the tool along the passes of all operations.</source>
+   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
   </message>
   <message>
    <source>Opens a machine file: TOML, or one of FreeCAD (.fcm).</source>
@@ -1065,8 +1169,8 @@
    <translation>Abspielen</translation>
   </message>
   <message>
-   <source>Shows the index moves from operation to operation: up, turn, over, down.</source>
-   <translation>Zeigt die Schwenkbewegungen von Operation zu Operation: hoch, drehen, hinüber, hinab.</translation>
+   <source>Plays all operations in their order, with the index moves between them.</source>
+   <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
   </message>
   <message>
    <source>The camera stays with the machine's bed, so that the table turns; otherwise it stays with the part.</source>
@@ -1075,6 +1179,10 @@
   <message>
    <source>The machine whose rotary axes are to hold the tool axes. Its ranges, travels and bodies are looked at for every operation.</source>
    <translation>Die Maschine, deren Drehachsen die Werkzeugachsen halten sollen. Ihre Bereiche, Verfahrwege und Körper werden für jede Operation betrachtet.</translation>
+  </message>
+  <message>
+   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
+   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
   <message>
    <source>Two rotary axes hold almost every tool axis in two ways. The bold one is taken: nearest to the operation before, inside all ranges and travels, and with no bodies that meet. What speaks against a solution stands below its angles.</source>
@@ -1239,6 +1347,10 @@
    <translation>Torusfräser</translation>
   </message>
   <message>
+   <source>Collisions of cutter, shank, holder and machine with the part, clamps and each other, and gouges that Verify found.</source>
+   <translation>Kollisionen von Fräser, Schaft, Halter und Maschine mit dem Teil, Spannmitteln und untereinander, und Konturverletzungen, die Prüfen fand.</translation>
+  </message>
+  <message>
    <source>Compare with other methods</source>
    <translation>Mit anderen Verfahren vergleichen</translation>
   </message>
@@ -1363,6 +1475,10 @@
    <translation>Wie viele verschiedene Achsen es insgesamt gibt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
   </message>
   <message>
+   <source>How many times faster than the machine it is played.</source>
+   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
+  </message>
+  <message>
    <source>How the axis of each sub-surface is found; greatest jerk needs a machine; those after it are there for comparison.</source>
    <translation>Wie die Achse jeder Teilfläche gefunden wird; größter Ruck braucht eine Maschine; alle danach dienen dem Vergleich.</translation>
   </message>
@@ -1443,6 +1559,10 @@
    <translation>Minimieren</translation>
   </message>
   <message>
+   <source>Moves the tool along the passes of all operations.</source>
+   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
+  </message>
+  <message>
    <source>Moves tool and holder along the passes.</source>
    <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
   </message>
@@ -1495,6 +1615,18 @@
    <translation>Plant die Fläche mit der ausprobierten Achse.</translation>
   </message>
   <message>
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <source>Play all operations</source>
+   <translation>Alle Operationen abspielen</translation>
+  </message>
+  <message>
+   <source>Plays all operations in their order, with the index moves between them.</source>
+   <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
+  </message>
+  <message>
    <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
    <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
   </message>
@@ -1537,6 +1669,10 @@
   <message>
    <source>Roughness Ra</source>
    <translation>Rauheit Ra</translation>
+  </message>
+  <message>
+   <source>Runs the tool along all operations in their order, with the index moves between them, on the machine where there is one.</source>
+   <translation>Führt das Werkzeug in ihrer Reihenfolge längs aller Operationen, mit den Schwenkbewegungen dazwischen, auf der Maschine, wo es eine gibt.</translation>
   </message>
   <message>
    <source>Scallop height</source>
@@ -1595,6 +1731,10 @@
    <translation>Teilflächen</translation>
   </message>
   <message>
+   <source>Takes this and computes again. It may help with the faces that have no axis.</source>
+   <translation>Übernimmt das und berechnet neu. Es kann bei den Flächen ohne Achse helfen.</translation>
+  </message>
+  <message>
    <source>Tapered</source>
    <translation>Kegelig</translation>
   </message>
@@ -1629,6 +1769,10 @@
   <message>
    <source>Tilt</source>
    <translation>Neigung</translation>
+  </message>
+  <message>
+   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
+   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
   <message>
    <source>To and fro, or all passes one way so that the cutter climbs or cuts conventionally.</source>
@@ -1817,6 +1961,41 @@
   <message>
    <source>zigzag</source>
    <translation>hin und her</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxisPlay</name>
+  <message>
+   <source>Collisions of cutter, shank, holder and machine with the part, clamps and each other, and gouges that Verify found.</source>
+   <translation>Kollisionen von Fräser, Schaft, Halter und Maschine mit dem Teil, Spannmitteln und untereinander, und Konturverletzungen, die Prüfen fand.</translation>
+  </message>
+  <message>
+   <source>How many times faster than the machine it is played.</source>
+   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
+  </message>
+  <message>
+   <source>Look from the machine's bed</source>
+   <translation>Vom Maschinenbett aus betrachten</translation>
+  </message>
+  <message>
+   <source>Moves the tool along the passes of all operations.</source>
+   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
+  </message>
+  <message>
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <source>Plays all operations in their order, with the index moves between them.</source>
+   <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
+  </message>
+  <message>
+   <source>The camera stays with the machine's bed, so that the table turns; otherwise it stays with the part.</source>
+   <translation>Die Kamera bleibt beim Maschinenbett, so dass sich der Tisch dreht; sonst bleibt sie beim Teil.</translation>
+  </message>
+  <message>
+   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
+   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
  </context>
  <context>
@@ -2093,6 +2272,17 @@
   <message>
    <source>Plan Orientations</source>
    <translation>Orientierungen planen</translation>
+  </message>
+ </context>
+ <context>
+  <name>ToolAxis_Play</name>
+  <message>
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <source>Runs tool, holder and machine along all operations in their order, with time, index moves and collisions</source>
+   <translation>Führt Werkzeug, Halter und Maschine in ihrer Reihenfolge längs aller Operationen, mit Zeit, Schwenkbewegungen und Kollisionen</translation>
   </message>
  </context>
  <context>

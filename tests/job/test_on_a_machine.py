@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.cldata.toolpath import Motion
 from toolaxis.feed.fixed_axis_time import index_time
 from toolaxis.job.files.plan_folder import read_json, read_plan, write_plan
 from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning.edit_axis import try_axis, with_operations
 from toolaxis.job.planning.timing import add_times
 from toolaxis.machine.setup import Mounting
+from toolaxis.plan.playback import playback_of
 from toolaxis.report.tables import plan_table
 
 HOLDER = [(10.0, 0.0), (10.0, 40.0)]
@@ -49,6 +51,23 @@ def test_axes_are_held_and_the_plan_says_where(plan, tmp_path: Path) -> None:
     assert verdict_document(again, verdict)["not_checked"] == ["obstacles other than the part"]
     rooms = verdict.operations[0].clearance
     assert rooms["machine"].distance >= 1.0 and rooms["index move"].distance >= 1.0, "bodies are judged too"
+
+
+@pytest.mark.parametrize("on_machine", [True, False])
+def test_a_plan_is_played_in_its_own_time(plan, on_machine: bool) -> None:
+    op = plan.operations[0]
+    other = replace(try_axis(plan, op, (0.05, -0.3, 0.95)), number=2)
+    whole = add_times(replace(plan, operations=(op, other, replace(op, number=3)), machine=plan.machine))
+    if not on_machine:
+        whole = replace(whole, operations=tuple(replace(one, time=None) for one in whole.operations), machine=None)
+    assert whole.timed == on_machine
+    played = playback_of(whole)
+    assert played.seconds == pytest.approx(whole.seconds) and len(played.between) == 2 and min(played.between) > 0
+    assert played.cutting == pytest.approx(sum(
+        one.time.cut if one.time else 60 * one.path.length(Motion.CUT) / 1000 for one in whole.operations))
+    none = replace(plan, operations=(replace(op, path=None),))
+    with pytest.raises(ta.InvalidInput):
+        playback_of(none)
 
 
 def test_the_judge_refuses_a_part_that_was_moved_out_of_the_travel(plan) -> None:

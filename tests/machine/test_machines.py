@@ -1,6 +1,8 @@
 """One contract for every machine that comes with toolaxis, and the conventions that its numbers follow."""
 
+import re
 from math import pi, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -232,3 +234,14 @@ def test_turns_of_the_plain_kind() -> None:
     assert pairs == [(0, 90), (180, -90)]
     angles, reached, free = one_turn((0, 0, 1), (0, 0, 1), (0, 0, 1))
     assert angles[0] == 0 and reached[0] and free[0]
+
+
+def test_what_a_machine_says_of_its_numbers_cites_no_key_of_a_paper() -> None:
+    """It is read in windows and in plans, where a key of resources/references.bib says nothing."""
+    text = (Path(__file__).parents[2] / "resources" / "references.bib").read_text(encoding="utf-8")
+    keys = re.findall(r"^@\w+\{(\w+),", text, re.MULTILINE)
+    assert len(keys) > 5
+    for name in library():
+        machine = load_machine(name)
+        said = " ".join((machine.name, machine.source, *machine.assumed))
+        assert machine.source and not [key for key in keys if key in said], said

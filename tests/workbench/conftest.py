@@ -63,8 +63,9 @@ OLDER = {"test_bad_cases.py": ("test_what_has_no_sculptured_face", "test_edges_s
 TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_saved_before.py"),
             ("test_arguments.py", "test_children.py", "test_choices.py", "test_document_parts.py", "test_export.py",
              "test_loose_faces.py", "test_machines.py", "test_objects_change.py", "test_path_collisions.py",
-             "test_renumbering.py", "test_tessellation_offset.py", "test_time_left.py", "test_translations.py"),
-            ("test_background.py", "test_fields.py", "test_settings.py", "test_views.py"),
+             "test_playing.py", "test_renumbering.py", "test_tessellation_offset.py", "test_time_left.py",
+             "test_translations.py"),
+            ("test_background.py", "test_fields.py", "test_play.py", "test_settings.py", "test_views.py"),
             ("test_many_jobs.py", "test_moving.py", "test_small_window.py", "test_verify_panel.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")

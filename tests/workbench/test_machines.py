@@ -10,8 +10,8 @@ from FreeCAD import Vector
 from freecad.toolaxis.document import machine_angles, machine_limits
 from freecad.toolaxis.document.machine import machine_of, place_machine
 from freecad.toolaxis.document.preferences import PLACE
-from freecad.toolaxis.gui.machine.motion import MachineTour, corners, meeting, places
 from freecad.toolaxis.services import collisions
+from freecad.toolaxis.services.tour import MachineTour, corners, meeting, places
 
 import toolaxis as ta
 from toolaxis.errors import Cancelled, InvalidInput

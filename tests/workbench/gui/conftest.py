@@ -292,6 +292,16 @@ class Desk:
         points = [image.pixelColor(x, y) for x in range(image.width()) for y in range(image.height())]
         return sum(one.red() > 90 and one.red() > 2.5 * max(one.green(), one.blue()) for one in points)
 
+    def played_at(self, form, share):
+        """Drag the slider of what is played to a share of its way; what is told of that place."""
+        form.slide.setValue(round(share * form.slide.maximum()))
+        self.pump(0.05)
+        return form.pointer.text()
+
+    def index_moves(self, form, looks=60):
+        """Shares of the way of the slider at which there is an index move."""
+        return [k / looks for k in range(looks + 1) if "ndex move to" in self.played_at(form, k / looks)]
+
     def open(self, path):
         """Open a STEP file in a document of its own; its part."""
         import FreeCAD
@@ -536,6 +546,29 @@ def operation(desk, wavy, _recalling, _asked):
     made = desk.operation_in(part.Document)
     _asked.append(inputs_of(made))
     return made
+
+
+@pytest.fixture
+def leaning(desk, operation, _recalling):
+    """A second operation, on a turned copy of the part, so that the machine has to index."""
+    import FreeCAD
+    from freecad.toolaxis.document.inputs import inputs_of
+    from freecad.toolaxis.services import api
+    from freecad.toolaxis.services.write_results import apply
+
+    from toolaxis.progress import NO_PROGRESS
+
+    document, part = operation.Document, operation.Faces[0][0]
+    other = document.addObject("Part::Feature", "Other")
+    other.Shape = part.Shape.copy()
+    other.Placement = FreeCAD.Placement(FreeCAD.Vector(0, 40, 0), FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), 25))
+    document.recompute()
+    inputs = inputs_of(operation)
+    inputs = replace(inputs, faces=((other, inputs.faces[0][1]),), limits=f"cone:0,{-0.42},{0.9},2")
+    with _recalling():
+        made = apply(document, inputs, api.task(inputs)(NO_PROGRESS))[0]
+    assert made.Motions, made.Reasons
+    return operation, made
 
 
 @pytest.fixture

@@ -235,11 +235,11 @@ def machine_seen(walk):
     walk.seen("machine")
     if form.slide.isEnabled():
         said = set()
-        for value in range(0, form.slide.maximum() + 1, 250):
+        for value in range(0, form.slide.maximum() + 1, form.slide.maximum() // 12):
             form.slide.setValue(value)
             desk.pump(0.1)
             said.add(form.pointer.text())
-            if value in (250, 500):
+            if "ndex move to" in form.pointer.text():
                 walk.seen(f"index-move-{value}")
         assert len(said) > 3
         walk.seen("last-operation")

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from dataclasses import replace
 
 import FreeCAD
 import pytest
@@ -125,32 +124,6 @@ def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
     assert not form.write.isEnabled()
 
 
-@pytest.fixture
-def leaning(desk, operation, _recalling):
-    """A second operation, on a turned copy of the part, so that the machine has to index."""
-    from freecad.toolaxis.document.inputs import inputs_of
-    from freecad.toolaxis.services import api
-    from freecad.toolaxis.services.write_results import apply
-
-    document, part = operation.Document, operation.Faces[0][0]
-    other = document.addObject("Part::Feature", "Other")
-    other.Shape = part.Shape.copy()
-    other.Placement = FreeCAD.Placement(Vector(0, 40, 0), FreeCAD.Rotation(Vector(1, 0, 0), 25))
-    document.recompute()
-    inputs = inputs_of(operation)
-    inputs = replace(inputs, faces=((other, inputs.faces[0][1]),), limits=f"cone:0,{-0.42},{0.9},2")
-    with _recalling():
-        made = apply(document, inputs, api.task(inputs)(_silent()))[0]
-    assert made.Motions, made.Reasons
-    return operation, made
-
-
-def _silent():
-    from toolaxis.progress import NO_PROGRESS
-
-    return NO_PROGRESS
-
-
 def machine_panel(desk, name, offset):
     desk.gui.Selection.clearSelection()
     desk.gui.runCommand("ToolAxis_Machine")
@@ -175,15 +148,18 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
     assert all("Face" in head for head in heads), heads
     assert all("C" in text and "B" in text for row in texts for text in row) and texts[0] != texts[1]
     desk.shot("70-machine")
-    form.slide.setValue(400)
-    desk.pump(0.2)
+    first = desk.played_at(form, 0.0)
+    assert first.startswith(f"{leaning[0].Label}: link"), first
+    between = desk.index_moves(form)
+    desk.played_at(form, between[len(between) // 3])
     assert "Z 500.0" in form.pointer.text(), form.pointer.text()
     desk.shot("71-index-move")
-    form.slide.setValue(990)
+    form.speed.setCurrentIndex(form.speed.count() - 1)
+    desk.played_at(form, 0.99)
     desk.press(form.play)
-    desk.wait(lambda: form.slide.value() == form.slide.maximum(), "the index move ends")
+    desk.wait(lambda: form.slide.value() == form.slide.maximum(), "all is played")
+    assert form.play.text() == "Play" and form.pointer.text().startswith(f"{leaning[1].Label}: ")
     form.still.setChecked(False)
-    form.slide.setValue(1000)
     desk.shot("72-second-operation")
     steps = document.UndoCount
     assert not view.getCameraOrientation().isSame(seen, 1e-6)
@@ -232,8 +208,8 @@ def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
     assert "of Clamp by" in form.pointer.text(), form.pointer.text()
     desk.shot("74-clamp-met")
     red, there = desk.red_points(document, tmp_path), form.pointer.text()
-    form.slide.setValue(500)
-    desk.pump(0.2)
+    between = desk.index_moves(form)
+    desk.played_at(form, between[len(between) // 2])
     assert form.pointer.text() != there and "Clamp" not in form.pointer.text(), form.pointer.text()
     desk.shot("75-clamp-free")
     assert desk.red_points(document, tmp_path) < 0.2 * red

@@ -174,13 +174,22 @@ def test_a_closed_panel_is_gone_with_its_plan(desk, form, remembered):
     assert known() is None
 
 
-def test_limits_that_leave_no_axis(desk, form):
+def test_limits_that_leave_no_axis(desk, form, remembered):
     form.limits.setCurrentIndex(1)
     form.limitZ.setValue(-1.0)
     desk.type(form.cone, "10 deg")
     desk.computed(form)
     assert "0 of 1 faces" in form.message.text() and not desk.standard_button("Ok").isEnabled()
     desk.shot("10-no-axis")
+    assert form.remedy1.isVisible() and form.remedy1.text() == "No limits" and not form.remedy2.isVisible()
+    desk.type(form.cone, "9 deg")
+    assert not form.remedy1.isVisible(), "it was offered for other inputs"
+    desk.type(form.cone, "10 deg")
+    desk.computed(form)
+    desk.press(form.remedy1)
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "it is computed again")
+    assert form.limits.currentIndex() == 0 and "Every face has an axis" in form.message.text(), form.message.text()
+    assert not form.remedy1.isVisible() and desk.standard_button("Ok").isEnabled()
 
 
 TYPED = (("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"), ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"),

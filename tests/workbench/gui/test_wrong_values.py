@@ -9,9 +9,10 @@ from FreeCAD import Vector
 #: How long somebody waits for a part that is odd before he presses Stop, s.
 PATIENCE = 5.0
 
-PANELS = ("ToolAxisPlan", "ToolAxisOperation", "ToolAxisVerify", "ToolAxisExport", "ToolAxisMachine")
+PANELS = ("ToolAxisPlan", "ToolAxisOperation", "ToolAxisVerify", "ToolAxisExport", "ToolAxisMachine",
+          "ToolAxisPlay")
 COMMANDS = ("ToolAxis_Recompute", "ToolAxis_Verify", "ToolAxis_Merge", "ToolAxis_Split", "ToolAxis_MakeJobs",
-            "ToolAxis_Machine", "ToolAxis_Export")
+            "ToolAxis_Machine", "ToolAxis_Play", "ToolAxis_Export")
 
 
 def names(document):
@@ -26,7 +27,8 @@ def panel(desk):
 def busy(form):
     """Whether something is computed for a form."""
     stop = getattr(form, "stop", None)
-    return (stop is not None and stop.isEnabled()) or "Looking" in form.message.text()
+    return (stop is not None and stop.isEnabled()) or any(
+        word in form.message.text() for word in ("Looking", "Reading the passes"))
 
 
 def run(desk, command):
@@ -348,7 +350,8 @@ def test_passes_deleted_before_the_commands(desk, operation):
     document.recompute()
     before = names(document)
     chosen(desk, operation)
-    for command in ("ToolAxis_Verify", "ToolAxis_MakeJobs", "ToolAxis_Machine", "ToolAxis_Export"):
+    for command in ("ToolAxis_Verify", "ToolAxis_MakeJobs", "ToolAxis_Machine", "ToolAxis_Play",
+                    "ToolAxis_Export"):
         told = run(desk, command)
         assert is_sentence(told)
         close(desk)

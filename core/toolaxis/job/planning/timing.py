@@ -144,18 +144,32 @@ def _path_time(mounting: Mounting, op: Operation, angles: Array, inputs: PlanInp
     return machining_time(mounting.machine, op.path, feeds_of(inputs), angles, mounting.table_from_part)
 
 
-def _between(mounting: Mounting, before: tuple[Operation, Array], after: tuple[Operation, Array]) -> float:
-    """Time from the end of one operation to the start of the next one, s."""
+def seconds_to_index(mounting: Mounting, before: tuple[Array, Array], after: tuple[Array, Array]) -> float:
+    """Time from the end of one operation to the start of the next one, s.
+
+    Up, turn, over and down, each from rest to rest, where the part's place on the table is known and Z has an upper
+    end; else the turn alone.
+
+    Parameters
+    ----------
+    mounting : Mounting
+        With the tool's length.
+    before, after : ((3,) array, (m,) array)
+        Last tip of the one and first tip of the other, part's frame, mm, with the rotary angles, rad.
+    """
     machine, top = mounting.machine, mounting.machine.linear[2].high
     turn = index_time(machine, before[1], after[1], INDEX_SECONDS)
     if not (mounting.judges_travel and isfinite(top)):
         return turn
-    ends = []
-    for (op, angles), row in ((before, -1), (after, 0)):
-        assert op.path is not None
-        ends.append(linear_coordinates(machine, op.path.cl[[row]], angles, float(mounting.tool_length or 0.0),
-                                       mounting.table_from_part)[0])
+    ends = [linear_coordinates(machine, tip[None], angles, float(mounting.tool_length or 0.0),
+                               mounting.table_from_part)[0] for tip, angles in (before, after)]
     ways = np.abs([*(ends[1] - ends[0])[:2], top - ends[0][2], top - ends[1][2]])
     drives = [machine.linear[k].drive.levels(machine.linear[k].name) for k in (0, 1, 2, 2)]
     x, y, up, down = travel_time(ways, *np.array(drives).T)
     return turn + float(up + max(x, y) + down)
+
+
+def _between(mounting: Mounting, before: tuple[Operation, Array], after: tuple[Operation, Array]) -> float:
+    """Time from the end of one operation to the start of the next one, s."""
+    assert before[0].path is not None and after[0].path is not None
+    return seconds_to_index(mounting, (before[0].path.cl[-1], before[1]), (after[0].path.cl[0], after[1]))

@@ -99,6 +99,24 @@ def jobs_of(operation):
     return [job for job, _ in _jobs_from(operation.Document, [operation_of(operation)])]
 
 
+def sources_of(job):
+    """The operations that the passes of a CAM job are from, in the order of the job.
+
+    Parameters
+    ----------
+    job : App.DocumentObject
+        Any object.
+
+    Returns
+    -------
+    list of (App.DocumentObject, str)
+        Each with what its passes are called: the operation, or its turned copy on another blade.  Empty for what is no
+        job with passes of ours.
+    """
+    group = getattr(getattr(job, "Operations", None), "Group", ())
+    return [(made.OrientedFrom, made.MadeFor) for made in group if getattr(made, "OrientedFrom", None) is not None]
+
+
 def count_jobs(operations):
     """How many jobs `make_jobs` makes: one for each orientation, or a single one where jobs have work planes.
 

@@ -117,6 +117,23 @@ def mounting(text, tool):
     return Mounting(load_machine(name), offset, tool.gauge_length)
 
 
+def mounting_in(document, tool):
+    """The machine of a document with the document on its table and a tool in its spindle; None without one.
+
+    Parameters
+    ----------
+    document : App.Document
+    tool : toolaxis.tools.tool.Tool
+
+    Raises
+    ------
+    InvalidInput
+        When its file does not describe one any more.
+    """
+    standing = machine_of(document)
+    return None if standing is None else mounting(text_of(standing.Machine, tuple(standing.Offset)), tool)
+
+
 def limits_from(text, tool):
     """What the library takes as machine or limits of the axis; None for none.
 

@@ -99,7 +99,8 @@ VERDICT = (
     Property("VectorList", "WorstScallops", _JUDGED, "Highest places left, in the plane's frame", True),
     Property("FloatList", "WorstScallopHeights", _JUDGED, "Their heights, mm", True),
     Property("VectorList", "WorstGouges", _JUDGED, "Deepest gouges, in the plane's frame", True),
-    Property("FloatList", "WorstGougeDepths", _JUDGED, "Their depths, mm", True))
+    Property("FloatList", "WorstGougeDepths", _JUDGED, "Their depths, mm", True),
+    Property("IntegerList", "WorstGougeMotions", _JUDGED, "Motions that cut them, -1 where not known", True, True))
 
 CLEARANCES = ("cutter", "shank", "holder")
 #: Distances beyond this are shown as this, mm: nothing stands there.

@@ -139,6 +139,7 @@ def _figures(operation, verdict, back):
                                  ("WorstGouges", "WorstGougeDepths", verdict.worst_gouge)):
         setattr(operation, name, [back.multVec(FreeCAD.Vector(*place.point)) for place in places])
         setattr(operation, values, [float(place.value) for place in places])
+    operation.WorstGougeMotions = [int(place.motion) for place in verdict.worst_gouge]
 
 
 def _mesh(operation, name):

@@ -100,6 +100,35 @@ class CollisionModel:
         found = found or nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row])
         return self._collision_texts(found, rotary)
 
+    def machine_on_passes(self, row, rotary, tips):
+        """Where a body of the machine meets something on the way over tips; None where none does.
+
+        Parameters
+        ----------
+        row, rotary, tips
+            As for `on_passes`.
+        """
+        from toolaxis.collision.machine_collision import nearest_meeting
+
+        found = nearest_meeting(self._holding(row), rotary, tips, self.surroundings[row])
+        return self._collision_texts(found, rotary)
+
+    def machine_at(self, row, joints):
+        """What a body of the machine meets where it stands; None where none does.
+
+        Parameters
+        ----------
+        row : int
+        joints : (3 + m,) array
+            mm, rad
+        """
+        from toolaxis.collision.machine_collision import meeting_on
+        from toolaxis.numeric.support_functions import places
+
+        held = self._holding(row)
+        found = meeting_on(held, joints[3:], places(joints[None, :3]), self.surroundings[row], with_tool=False)
+        return self._collision_texts(found, joints[3:])
+
     def at(self, row, joints):
         """What meets where a machine stands, with the tool of an operation; None where nothing does.
 
@@ -113,15 +142,11 @@ class CollisionModel:
         -------
         Collision or None
         """
-        from toolaxis.collision.machine_collision import meeting_on
         from toolaxis.machine.kinematics import forward
-        from toolaxis.numeric.support_functions import places
 
         held = self._holding(row)
         tips, _ = forward(held.machine, joints[None], held.tool_length, held.table_from_part)
-        found = self._of_tool(row, joints[3:], tips)
-        found = found or meeting_on(held, joints[3:], places(joints[None, :3]), self.surroundings[row], with_tool=False)
-        return self._collision_texts(found, joints[3:])
+        return self._collision_texts(self._of_tool(row, joints[3:], tips), joints[3:]) or self.machine_at(row, joints)
 
     def _of_tool(self, row, rotary, tips):
         """Where the tool of an operation lies deepest in an object, on the way over tips or at a single one."""
@@ -202,12 +227,27 @@ def copies(operations):
     -------
     list of ShapeCopy
     """
+    jobs = [inputs_of(operation) for operation in operations]
+    return copies_around(operations[0].Document, jobs) if operations else []
+
+
+def copies_around(document, jobs):
+    """What is machined, what is avoided, and what else is in sight in a document, each once.
+
+    Parameters
+    ----------
+    document : App.Document
+    jobs : sequence of freecad.toolaxis.document.inputs.JobInputs
+
+    Returns
+    -------
+    list of ShapeCopy
+    """
     from toolaxis.cad.freecad.documents import name_of, shape_of
 
-    jobs = [inputs_of(operation) for operation in operations]
     parts = list({thing.Name: thing for job in jobs for thing in job.things}.values())
     avoided = [thing for job in jobs for thing in job.obstacles]
-    seen = [body for body in bodies_in(operations[0].Document, parts) if body.Visibility] if operations else []
+    seen = [body for body in bodies_in(document, parts) if body.Visibility]
     found = {thing.Name: thing for thing in (*parts, *avoided, *seen)}
     return [ShapeCopy(thing.Name, name_of(thing), shape_of(thing).copy()) for thing in found.values()]
 
@@ -294,7 +334,7 @@ def along(known, journey, rows, progress):
     ----------
     known : CollisionModel
     journey : object
-        With `at(way)`, `station(way)` and `joints`, the stations.
+        With `at(way)`, `station(way)` and `legs`, the stations.
     rows : sequence of int
         The operation of each station.
     progress : toolaxis.progress.Progress
@@ -306,7 +346,7 @@ def along(known, journey, rows, progress):
     """
     from toolaxis.progress import activate_progress
 
-    count, found = STEPS * (len(journey.joints) - 1) + 1, []
+    count, found = STEPS * (len(journey.legs) - 1) + 1, []
     with activate_progress(progress):
         for k in range(count):
             progress.report("looking for collisions", k, count)

@@ -6,6 +6,7 @@ from freecad.toolaxis.gui.commands.freecad import add_commands
 from freecad.toolaxis.gui.commands.jobs import MakeJobs
 from freecad.toolaxis.gui.commands.machine import ChooseMachine
 from freecad.toolaxis.gui.commands.plan import PlanOrientations
+from freecad.toolaxis.gui.commands.play import Play
 from freecad.toolaxis.gui.commands.recompute import Recompute
 from freecad.toolaxis.gui.commands.verify import Verify
 
@@ -15,4 +16,4 @@ def register():
     return add_commands({
         "ToolAxis_PlanOrientations": PlanOrientations(), "ToolAxis_Verify": Verify(), "ToolAxis_Recompute": Recompute(),
         "ToolAxis_Merge": MergeSubSurfaces(), "ToolAxis_Split": SplitSubSurface(), "ToolAxis_MakeJobs": MakeJobs(),
-        "ToolAxis_Machine": ChooseMachine(), "ToolAxis_Export": Export()})
+        "ToolAxis_Machine": ChooseMachine(), "ToolAxis_Play": Play(), "ToolAxis_Export": Export()})

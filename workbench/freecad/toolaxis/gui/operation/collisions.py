@@ -5,8 +5,8 @@ from contextlib import suppress
 import FreeCAD
 from freecad.toolaxis.document.passes import PassStations
 from freecad.toolaxis.document.read_operation import OperationRecord
-from freecad.toolaxis.gui.machine.scene import red_over
-from freecad.toolaxis.gui.plan.preview import view_of
+from freecad.toolaxis.gui.play.nodes import view_of
+from freecad.toolaxis.gui.play.scene import red_over
 from freecad.toolaxis.gui.widgets.fields import tell
 from freecad.toolaxis.services import collisions
 from freecad.toolaxis.services.background import BackgroundWork

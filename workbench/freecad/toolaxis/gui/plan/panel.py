@@ -18,7 +18,9 @@ from freecad.toolaxis.gui.plan.account import headline
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
+from freecad.toolaxis.gui.plan.player import PlanPlayer
 from freecad.toolaxis.gui.plan.preview import Preview
+from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
 from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
@@ -65,6 +67,8 @@ class PlanPanel(Panel):
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
         self.view = AxisView(self.form, self.preview)
+        self.player = PlanPlayer(document, self.form, self.preview)
+        self.remedies = RemedyRow(self.form)
         self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed = None
         self.outrun = False
@@ -142,9 +146,11 @@ class PlanPanel(Panel):
         form.compute.clicked.connect(self.compute)
         form.stop.clicked.connect(self.stop)
         form.pictures.clicked.connect(self.draw)
+        form.playAll.toggled.connect(self.play)
         self.view.changed.connect(self._show_state)
         self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
+        self.remedies.chosen.connect(self.compute_again)
 
     def _add_faces(self):
         faces, problems = selected_faces(self.document)
@@ -192,6 +198,7 @@ class PlanPanel(Panel):
         """Something in the fields is different: check it, and lock OK until it is computed again."""
         if self.work is None:
             self.computed = None
+            self.remedies.clear()
         told = self.fields.faces.summary()
         self.form.facesTold.setText(told)
         self.form.facesTold.setToolTip(told)
@@ -205,6 +212,9 @@ class PlanPanel(Panel):
         form.progress.setVisible(computing)
         for page in (form.jobPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
             page.setEnabled(not computing)
+        form.playAll.setEnabled(self.ready)
+        if not self.ready or self.player.plan is not self.view.plan:
+            self.player.close()
         if self.buttons is not None:
             with suppress(RuntimeError):
                 self.buttons.button(QtWidgets.QDialogButtonBox.Ok).setEnabled(self.ready)
@@ -242,6 +252,7 @@ class PlanPanel(Panel):
             self._show_state()
             return
         self.problem, self.outrun, self.standing = "", False, None
+        self.remedies.clear()
         inputs = JobInputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
         self.preview.clear()
@@ -278,6 +289,18 @@ class PlanPanel(Panel):
         self.ongoing.begin(translate("ToolAxis", "Drawing"))
         self.work.start()
 
+    def play(self, wanted):
+        """Run the tool along all operations of the plan that is shown, or end that.
+
+        Parameters
+        ----------
+        wanted : bool
+        """
+        if not wanted or not self.ready:
+            self.player.close()
+        elif self.player.plan is None:
+            self.player.show(self.view.plan, self.computed, self.view.operation_titles)
+
     def _drawn(self, pictures):
         self.work = None
         self._show_state()
@@ -293,6 +316,18 @@ class PlanPanel(Panel):
         """
         if self.work is None:
             self.fields.set_count("orientations", count)
+            self.compute()
+
+    def compute_again(self, inputs):
+        """Show other inputs in the fields, and compute with them.
+
+        Parameters
+        ----------
+        inputs : freecad.toolaxis.document.inputs.JobInputs
+        """
+        if self.work is None:
+            self.fields.fill(inputs)
+            self._edited()
             self.compute()
 
     def _pieces(self):
@@ -331,6 +366,7 @@ class PlanPanel(Panel):
         self.computed = None if self.outrun else inputs
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
         self.view.show(plan, pictures, titles, AxisLocks(inputs, plan))
+        self.remedies.show(plan, inputs)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
         self._show_state()
 
@@ -379,9 +415,11 @@ class PlanPanel(Panel):
                 self._changed()
 
     def _forget_view(self):
+        self.player.forget()
         self.preview.forget()
 
     def _let_go(self):
+        self.player.close()
         self.view.leave()
         self.preview.clear()
 

@@ -4,18 +4,15 @@ from contextlib import suppress
 from functools import partial
 from itertools import pairwise
 
-import FreeCADGui
 import numpy as np
 from freecad.toolaxis.document.axis_lines import COLOUR, SHARE, ends_of
 from freecad.toolaxis.document.preferences import colours
 from freecad.toolaxis.document.tool_colours import tool_colour
+from freecad.toolaxis.gui.play.nodes import colour_node, revolve, solids, view_of
 from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
 from PySide import QtCore
 
-_COLOURS = {"cutter": (0.80, 0.80, 0.82), "shank": (0.62, 0.64, 0.68), "holder": (0.35, 0.45, 0.60)}
-_CLEAR = {"cutter": 0.0, "shank": 0.15, "holder": 0.35}
 _TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.35, 0.90)))
-_AROUND = 48
 #: Widths of the cuts of the operation that is shown, and of the others, pixels.
 _THICK, _THIN = 1.6, 1.0
 #: Time between the parts that are put into the view, ms: the first drawing of each is slow.
@@ -38,6 +35,7 @@ class Preview:
         self.view = None
         self.stations = None
         self._others, self._shown_plan = None, None
+        self._switch, self._tool_seen = None, True
         self._left = []
         self._timer = QtCore.QTimer()
         self._timer.setInterval(_STEP)
@@ -73,11 +71,14 @@ class Preview:
         tool = coin.SoSeparator()
         self.transform = coin.SoTransform()
         tool.addChild(self.transform)
-        root.addChild(tool)
+        self._switch = coin.SoSwitch()
+        self._switch.addChild(tool)
+        root.addChild(self._switch)
+        self.show_tool(self._tool_seen)
         self._left = [(root, lambda: _lines(op.path, _colour_of(plan, op))),
                       (root, lambda: _frame(op.frame, 0.35 * op.face.diagonal)),
                       *([] if op.orientation.lead is None else [(root, lambda: _axes(op))]),
-                      *((tool, partial(_revolved, *solid)) for solid in solids(op.tool)), *self._left]
+                      *((tool, partial(revolve, *solid)) for solid in solids(op.tool)), *self._left]
         self.stations = PreviewStations(op.path)
         self.root = root
         view.getSceneGraph().addChild(root)
@@ -100,6 +101,17 @@ class Preview:
             return
         above, make = self._left.pop(0)
         above.addChild(make())
+
+    def show_tool(self, seen):
+        """Show or hide the tool, of this operation and of those that are shown later.
+
+        Parameters
+        ----------
+        seen : bool
+        """
+        self._tool_seen = seen
+        if self._switch is not None:
+            self._switch.whichChild = coin.SO_SWITCH_ALL if seen else coin.SO_SWITCH_NONE
 
     def move(self, share):
         """Move the tool along the passes.
@@ -127,33 +139,14 @@ class Preview:
         if self.root is not None:
             with suppress(Exception):  # the view may be gone already, and its scene with it
                 self.view.getSceneGraph().removeChild(self.root)
-        self.root = self.transform = self.stations = None
+        self.root = self.transform = self.stations = self._switch = None
         self._left = [(above, make) for above, make in self._left if above is self._others]
 
     def forget(self):
         """Let go without touching the view."""
-        self.root = self.transform = self.view = self.stations = None
+        self.root = self.transform = self.view = self.stations = self._switch = None
         self._others = self._shown_plan = None
         self._left = []
-
-
-def view_of(name):
-    """The 3D view of a document; None where it has none.
-
-    Parameters
-    ----------
-    name : str
-        Of the document.
-    """
-    try:
-        document = FreeCADGui.getDocument(name)
-    except NameError:  # it is just being closed
-        document = None
-    view = document.ActiveView if document is not None else None
-    if hasattr(view, "getSceneGraph"):
-        return view
-    found = document.mdiViewsOfType("Gui::View3DInventor") if document is not None else []
-    return found[0] if found else None
 
 
 class PreviewStations:
@@ -188,34 +181,8 @@ class PreviewStations:
         return self.path.cl[k - 1] + part * (self.path.cl[k] - self.path.cl[k - 1]), axis / np.linalg.norm(axis)
 
 
-def solids(tool):
-    """Closed outlines of cutter, shank and holder, (name, (k, 2) array of radius and z from the tip).
-
-    Parameters
-    ----------
-    tool : toolaxis.tools.tool.Tool
-    """
-    from toolaxis.report.figures.splat_renderer import tool_outlines
-
-    return [(name.split(" ")[0], line) for name, line in tool_outlines(tool, 6 * tool.radius).items()]
-
-
-def _coloured(colour, clear=0.0, lit=True):
-    node = coin.SoSeparator()
-    model = coin.SoLightModel()
-    model.model = coin.SoLightModel.PHONG if lit else coin.SoLightModel.BASE_COLOR
-    material = coin.SoMaterial()
-    material.diffuseColor.setValue(*colour)
-    material.specularColor.setValue(0.3, 0.3, 0.3)
-    material.shininess.setValue(0.4)
-    material.transparency.setValue(clear)
-    node.addChild(model)
-    node.addChild(material)
-    return node
-
-
 def _polylines(colour, lines, width):
-    node = _coloured(colour, lit=False)
+    node = colour_node(colour, lit=False)
     style = coin.SoDrawStyle()
     style.lineWidth = width
     points = coin.SoCoordinate3()
@@ -273,7 +240,7 @@ def _frame(frame, size):
     for (name, colour), way in zip(_TRIAD, (frame.x, frame.y, frame.z), strict=True):
         tip = frame.shown_at + size * way
         node.addChild(_polylines(colour, [np.array([frame.shown_at, tip])], 3.0))
-        label = _coloured(colour, lit=False)
+        label = colour_node(colour, lit=False)
         move = coin.SoTranslation()
         move.translation.setValue(*(float(x) for x in tip + 0.06 * size * way))
         font = coin.SoFont()
@@ -283,23 +250,4 @@ def _frame(frame, size):
         for child in (move, font, text):
             label.addChild(child)
         node.addChild(label)
-    return node
-
-
-def _revolved(name, outline):
-    node = _coloured(_COLOURS.get(name, _COLOURS["shank"]), _CLEAR.get(name, 0.3))
-    hints = coin.SoShapeHints()
-    hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE
-    hints.creaseAngle = 0.5
-    turn = np.linspace(0, 2 * np.pi, _AROUND + 1)
-    radius, z = np.asarray(outline, dtype=float).T
-    rows = np.stack([radius[:, None] * np.cos(turn), radius[:, None] * np.sin(turn),
-                     np.broadcast_to(z[:, None], (len(z), len(turn)))], axis=-1)
-    points = coin.SoCoordinate3()
-    points.point.setValues(0, rows.size // 3, rows.reshape(-1, 3).tolist())
-    mesh = coin.SoQuadMesh()
-    mesh.verticesPerRow = len(turn)
-    mesh.verticesPerColumn = len(outline)
-    for child in (hints, points, mesh):
-        node.addChild(child)
     return node

@@ -167,6 +167,11 @@ class AxisView(QtCore.QObject):
             return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
         return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)
 
+    @property
+    def operation_titles(self):
+        """What the operations of the plan are called, by their numbers."""
+        return {op.number: self._title(op) for op in self.plan.operations}
+
     def _titles(self):
         return [self._title(op) for op in self.plan.operations]
 
@@ -224,7 +229,7 @@ class AxisView(QtCore.QObject):
         form.lock.setEnabled(self.tried is not None and self.tried.done)
         form.best.setEnabled(op is not None and op is not self._best(op))
         moves = op is not None and op.orientation.lead is not None
-        for widget in (form.slide, form.slideLabel, form.pictures):
+        for widget in (form.slide, form.slideLabel, form.pictures, form.playAll):
             widget.setVisible(op is not None)
         for widget in (form.lock, form.best, form.lockAxis, form.lockFeed, form.turnFeed):
             widget.setVisible(op is not None and not moves and not self._several)

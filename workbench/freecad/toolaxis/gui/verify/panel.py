@@ -8,7 +8,7 @@ import numpy as np
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.verdict_maps import drawn, shown_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill
-from freecad.toolaxis.gui.plan.preview import view_of
+from freecad.toolaxis.gui.play.nodes import view_of
 from freecad.toolaxis.gui.verify.colour_bar import Scale
 from freecad.toolaxis.gui.verify.paint import WHAT, Paint, skins_of
 from freecad.toolaxis.gui.widgets.fields import load_form, tell

@@ -1,4 +1,4 @@
-"""A machine around the part in the 3D view: table, trunnion, head and tool as they stand, what meets in red.
+"""Tool and machine in the 3D view: table, trunnion, head and tool as they stand, what meets in red.
 
 Parts and clamps that something meets are drawn once more over themselves, in red: they keep their own colours.
 """
@@ -7,8 +7,8 @@ from contextlib import suppress
 
 import numpy as np
 from freecad.toolaxis.document.placement import carried, chain_of, matrix_of
-from freecad.toolaxis.gui.machine.motion import corners, places
-from freecad.toolaxis.gui.plan.preview import _COLOURS, _coloured, _revolved, solids, view_of
+from freecad.toolaxis.gui.play.nodes import COLOURS, colour_node, revolve, solids, view_of
+from freecad.toolaxis.services.tour import corners, places
 from pivy import coin
 
 _TABLE, _HEAD, _RED = (0.45, 0.55, 0.68), (0.72, 0.62, 0.42), (0.90, 0.05, 0.05)
@@ -35,7 +35,8 @@ class MachineScene:
 
         Parameters
         ----------
-        mounted : toolaxis.machine.setup.Mounting
+        mounted : toolaxis.machine.setup.Mounting or None
+            None for the tools alone.
         tools : sequence of toolaxis.tools.tool.Tool
         """
         from toolaxis.machine.body_poses import beside_part
@@ -44,15 +45,15 @@ class MachineScene:
         self.view, self.mounted = view_of(self.name), mounted
         if self.view is None:
             return
-        self.seen = self.seen or self.view.getCamera()
+        self.seen = self.seen or (None if mounted is None else self.view.getCamera())
         self.root = coin.SoSeparator()
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
         self.root.addChild(style)
         self.bodies = []
-        for body in mounted.machine.bodies:
+        for body in () if mounted is None else mounted.machine.bodies:
             beside = beside_part(mounted.machine, body)
-            node = _coloured(_TABLE if beside else _HEAD, _CLEAR[beside])
+            node = colour_node(_TABLE if beside else _HEAD, _CLEAR[beside])
             transform = coin.SoMatrixTransform()
             node.insertChild(transform, 0)
             for child in _hull(corners(body)):
@@ -80,9 +81,9 @@ class MachineScene:
         """Cutter, shank and holder; their materials join those that turn red."""
         node = coin.SoSeparator()
         for solid in solids(tool):
-            member = _revolved(*solid)
+            member = revolve(*solid)
             node.addChild(member)
-            self.members.append((solid[0], member.getChild(1), _COLOURS.get(solid[0], _COLOURS["shank"])))
+            self.members.append((solid[0], member.getChild(1), COLOURS.get(solid[0], COLOURS["shank"])))
         return node
 
     def stand(self, joints, red, still, row=0):
@@ -106,14 +107,32 @@ class MachineScene:
         for body, transform, material, colour in self.bodies:
             transform.matrix.setValue(*_matrix(found[body.carried]))
             material.diffuseColor.setValue(*(_RED if body.name in red else colour))
-        for name, material, colour in self.members:
-            material.diffuseColor.setValue(*(_RED if name in red else colour))
-        self.spindle.whichChild = self.kinds[row]
         tip, axis = forward(self.mounted.machine, joints[None], self.lengths[row], self.mounted.table_from_part)
-        self.tool.matrix.setValue(*_matrix(_upright(tip[0], axis[0])))
+        self._put_tool(tip[0], axis[0], red, row)
         if still:
             self._follow(found["bed"] @ np.linalg.inv(self.bed))
         self.bed = found["bed"]
+
+    def stand_alone(self, tip, axis, red, row=0):
+        """Move the tool, where there is no machine.
+
+        Parameters
+        ----------
+        tip, axis : (3,) array
+            mm; unit vector from tip to spindle.
+        red : set of str
+            Names of members of the tool that meet something.
+        row : int
+            Number of the operation whose tool it is.
+        """
+        if self.root is not None:
+            self._put_tool(tip, axis, red, row)
+
+    def _put_tool(self, tip, axis, red, row):
+        for name, material, colour in self.members:
+            material.diffuseColor.setValue(*(_RED if name in red else colour))
+        self.spindle.whichChild = self.kinds[row]
+        self.tool.matrix.setValue(*_matrix(_upright(tip, axis)))
 
     def redden(self, things):
         """Show objects in red, and all others as they are.

@@ -1,0 +1,90 @@
+"""What is offered for a face without an axis, and that it helps where it can be known that it does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import toolaxis as ta
+from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
+from toolaxis.plan.remedies import Remedy, remedies_of
+
+HOLDER = [(20.0, 0.0), (20.0, 40.0)]
+
+
+def plane(corner, one, other, flip=False) -> ta.Face:
+    s, t = np.meshgrid(np.linspace(0, 1, 3), np.linspace(0, 1, 3), indexing="ij")
+    return ta.Face.from_bspline(np.array(corner) + s[..., None] * np.array(one) + t[..., None] * np.array(other),
+                                degree=(2, 2), flip=flip)
+
+
+def pocket(depth: float) -> ta.Part:
+    """A wavy floor, 30 mm wide, between walls."""
+    x, y = np.meshgrid(np.linspace(0, 30, 5), np.linspace(0, 30, 5), indexing="ij")
+    floor = ta.Face.from_bspline(np.stack([x, y, 0.5 * np.sin(x / 8) * np.cos(y / 8)], axis=-1))
+    up = (0.0, 0.0, depth + 1)
+    walls = [plane((0, 0, -1), (30, 0, 0), up, flip=True), plane((0, 30, -1), (30, 0, 0), up),
+             plane((0, 0, -1), (0, 30, 0), up), plane((30, 0, -1), (0, 30, 0), up, flip=True)]
+    return ta.Part.from_faces([floor, *walls])
+
+
+def test_a_longer_stick_out_is_offered_and_helps() -> None:
+    """The holder, 40 mm wide, goes into no pocket of 30 mm: it has to stay above its walls, 40 mm high."""
+    tool = ta.Tool.ball(diameter=6, stickout=20, holder=HOLDER)
+    plan = ta.plan(pocket(40), tool, 0.3, faces=[1], limits="cone:0,0,1,30")
+    assert not plan.operations[0].done, plan.outcome
+    first = remedies_of(plan)[0]
+    assert first.name == "stickout" and first.value == 45.0 and first.share > 0.5
+    again = ta.plan(pocket(40), replace(tool, stickout=first.value), 0.3, faces=[1], limits="cone:0,0,1,30")
+    assert again.operations[0].done and remedies_of(again) == ()
+    deep = ta.plan(pocket(90), tool, 0.3, faces=[1], limits="cone:0,0,1,30")
+    assert "stickout" not in [one.name for one in remedies_of(deep)], "95 mm are more than 12 diameters"
+
+
+def test_limits_that_forbid_everything_are_offered_to_go() -> None:
+    plan = ta.plan(pocket(2).faces[0], "ball:6", 0.2, limits="cone:0,0,-1,20")
+    assert not plan.operations[0].done
+    assert remedies_of(plan)[0] == Remedy("limits", "", 1.0)
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return ta.plan(pocket(2).faces[0], ta.Tool.torus(diameter=12, corner_radius=2, stickout=50), 0.2)
+
+
+def refused(plan, *codes: int, outcome: str = "not_found"):
+    """The plan with one operation without an axis, whose axes are forbidden for given reasons."""
+    reason = np.array(codes, dtype=np.int8)
+    axes = np.tile([0.0, 0.0, 1.0], (len(codes), 1))
+    none = np.full(len(codes), np.inf)
+    found = Orientation(None, outcome=outcome, map=AxisMap(axes, none, none, reason, np.zeros(len(codes))))
+    return replace(plan, operations=(replace(plan.operations[0], path=None, orientation=found),))
+
+
+def test_each_reason_has_its_remedy(plan) -> None:
+    code = REASONS.index
+    assert remedies_of(refused(plan, *[code("gouge")] * 3, code("cutter collides"))) == (Remedy("tool", "ball:8", 1.0),)
+    assert remedies_of(refused(plan, code("too near to a normal"))) == (Remedy("tool", "ball:12", 1.0),)
+    both = remedies_of(refused(plan, *[code("gouge")] * 3, code("back of the surface")))
+    assert both == (Remedy("tool", "ball:8", 0.75), Remedy("regions", "auto", 0.25))
+    rare = remedies_of(refused(plan, *[code("gouge")] * 19, code("back of the surface")))
+    assert [one.name for one in rare] == ["tool"], "one axis in twenty is not worth it"
+    assert remedies_of(refused(plan, code("holder collides"))) == (), "there is no holder"
+
+
+def test_nothing_is_offered_where_nothing_is_known(plan) -> None:
+    code = REASONS.index
+    assert remedies_of(plan) == ()
+    for outcome in ("cancelled", "failed"):
+        assert remedies_of(refused(plan, code("gouge"), outcome=outcome)) == ()
+    several = replace(refused(plan, code("gouge")), tools=(*plan.tools, ta.Tool.ball(diameter=4)))
+    assert remedies_of(several) == ()
+
+
+def test_a_face_whose_normals_spread_too_far_is_offered_to_be_divided(plan) -> None:
+    """It is refused before an axis is looked at: there is no map."""
+    lost = refused(plan, 0, outcome="infeasible")
+    op = lost.operations[0]
+    lost = replace(lost, operations=(replace(op, orientation=replace(op.orientation, map=None)),))
+    assert remedies_of(lost) == (Remedy("regions", "auto", 1.0),)
+    assert remedies_of(lost, divided=True) == ()
