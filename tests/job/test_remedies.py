@@ -45,6 +45,8 @@ def test_limits_that_forbid_everything_are_offered_to_go() -> None:
     plan = ta.plan(pocket(2).faces[0], "ball:6", 0.2, limits="cone:0,0,-1,20")
     assert not plan.operations[0].done
     assert remedies_of(plan)[0] == Remedy("limits", "", 1.0)
+    assert plan.machine is None
+    assert remedies_of(replace(plan, inputs=replace(plan.inputs, limits=""))) == (), "a machine's limits are no choice"
 
 
 @pytest.fixture(scope="module")

@@ -72,7 +72,7 @@ def remedies_of(plan: Plan, divided: bool = False) -> tuple[Remedy, ...]:
              *_ball(plan.tools[0], float(shares[_UPRIGHT]))]
     if not divided:
         found.append(Remedy("regions", "auto", float(shares[_BACK])))
-    if plan.inputs.limits or plan.machine is not None:
+    if plan.inputs.limits:  # those of a machine are no choice
         found.append(Remedy("limits", "", float(shares[_LIMITS])))
     return tuple(sorted((one for one in found if one.share >= _WORTH), key=lambda one: -one.share))
 
