@@ -283,10 +283,6 @@
    <translation>Keine Kollisionen gefunden.</translation>
   </message>
   <message>
-   <source>No limits</source>
-   <translation>Ohne Grenzen</translation>
-  </message>
-  <message>
    <source>No map: no axis was looked at.</source>
    <translation>Keine Karte: Es wurde keine Achse betrachtet.</translation>
   </message>
@@ -685,6 +681,10 @@
   <message>
    <source>Whole part</source>
    <translation>Ganzes Teil</translation>
+  </message>
+  <message>
+   <source>Without limits</source>
+   <translation>Ohne Grenzen</translation>
   </message>
   <message>
    <source>Work coordinates {}</source>

@@ -495,10 +495,11 @@ def _row_of(rows: Array, k: int) -> Triple:
 
 @jit_uncounted
 def _find_clear(tool: ReachTool, tips: ReachTips, k: int, heights: Array) -> float:
-    """Heights up to which the pieces of a tool are inside the ball at a contact, and so keep off what is below its
-    middle, into (pieces,); how far above the tip along the normal that is.
+    """How high above the tip each piece of a tool is inside the ball at a contact, into (pieces,), mm; how high above
+    the tip along the normal the middle of the ball is, less the margin, mm.
 
-    The lower end of a piece is a disc with a round rim, as the upper one: it is inside where its farthest place is.
+    What lies below both heights is no nearer to the piece than it may be.  A piece is inside from its lower end up to
+    a disc where the farthest places of that end and of the disc's rim are.
     """
     centre, radius = _row_of(tips.centre, k), tips.radius[k]
     tip, axis = _row_of(tips.place, k), _row_of(tips.axis, k)

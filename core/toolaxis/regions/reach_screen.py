@@ -31,7 +31,7 @@ _BLOCK = 4
 _PROMISING, _FEWEST = 0.7, 12
 #: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
 _HALF = 1.0001
-#: Radii of the balls that are tried at every contact, mm: each so many times as large as the one before it.
+#: Radii of the balls that are tried at every contact, mm: each half as large again as the one before it.
 _BALLS = 0.3 * 1.5 ** np.arange(14)
 
 
@@ -104,20 +104,20 @@ class ReachScreen:
         ball = np.maximum(self.largest_balls[cell], self._corner_of(tool))  # only asked where the corner's own fits
         ball = np.where(ball > 0, ball, -np.inf)
         centre = point + np.where(ball > 0, ball + scene.allowance, 0.0)[:, None] * normal
-        all_ = ReachTips(places, axes, normal, centre, ball)
+        asked = ReachTips(places, axes, normal, centre, ball)
         whole = scene.tool(tool, self._required)
         blocked = np.zeros(len(places), dtype=bool)
         for first in range(0, len(whole.pieces), MOST_PIECES):
             rest = np.flatnonzero(~blocked)
             some = whole._replace(pieces=np.ascontiguousarray(whole.pieces[first:first + MOST_PIECES]))
-            blocked[rest] = _find(scene, some, all_.pick(rest))
+            blocked[rest] = _find(scene, some, asked.pick(rest))
         return blocked
 
     @property
     def largest_balls(self) -> Array:
         """Radius of the largest ball of those tried that fits at each contact, mm, 0 where none does, (n,)."""
         if self._fitting is None:
-            # The first ball that is known to fit, and the first that is not: the smaller ones of one that fits do too.
+            # Halved between the largest known to fit and the smallest known not to: what is inside one that fits does.
             fits = np.zeros(len(self.cells), dtype=int)
             misses = np.full(len(self.cells), len(_BALLS) + 1)
             while (open_ := misses - fits > 1).any():
@@ -251,10 +251,10 @@ def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
     return axis, order[place]
 
 
-def _find(scene: ReachScene, tool: ReachTool, all_: ReachTips) -> Bools:
-    blocked, room = np.zeros(len(all_.place), dtype=bool), ReachRoom.make()
+def _find(scene: ReachScene, tool: ReachTool, asked: ReachTips) -> Bools:
+    blocked, room = np.zeros(len(asked.place), dtype=bool), ReachRoom.make()
     for first in range(0, len(blocked), _AT_ONCE):
         breathe()
         some = slice(first, first + _AT_ONCE)
-        find_blocked(scene.tree, tool, all_.pick(some), room, blocked[some])
+        find_blocked(scene.tree, tool, asked.pick(some), room, blocked[some])
     return blocked

@@ -181,7 +181,7 @@ def test_limits_that_leave_no_axis(desk, form, remembered):
     desk.computed(form)
     assert "0 of 1 faces" in form.message.text() and not desk.standard_button("Ok").isEnabled()
     desk.shot("10-no-axis")
-    assert form.remedy1.isVisible() and form.remedy1.text() == "No limits" and not form.remedy2.isVisible()
+    assert form.remedy1.isVisible() and form.remedy1.text() == "Without limits" and not form.remedy2.isVisible()
     desk.type(form.cone, "9 deg")
     assert not form.remedy1.isVisible(), "it was offered for other inputs"
     desk.type(form.cone, "10 deg")

@@ -8,9 +8,6 @@ from PySide import QtCore
 
 translate = FreeCAD.Qt.translate
 
-#: As many are offered at most.
-_MOST = 3
-
 
 class RemedyRow(QtCore.QObject):
     """Buttons below the message of the planning panel.
@@ -26,7 +23,7 @@ class RemedyRow(QtCore.QObject):
 
     def __init__(self, form):
         super().__init__(form)
-        self.buttons = [form.remedy1, form.remedy2, form.remedy3][:_MOST]
+        self.buttons = [form.remedy1, form.remedy2, form.remedy3]
         self.offers = []
         for k, button in enumerate(self.buttons):
             button.clicked.connect(lambda _=False, k=k: self._choose(k))
@@ -44,7 +41,7 @@ class RemedyRow(QtCore.QObject):
         from toolaxis.plan.remedies import remedies_of
 
         found = () if inputs.rack or inputs.moves else remedies_of(plan, inputs.divides)
-        self.offers = [(one, use_remedy(inputs, one)) for one in found[:_MOST]]
+        self.offers = [(one, use_remedy(inputs, one)) for one in found[:len(self.buttons)]]
         for k, button in enumerate(self.buttons):
             if k < len(self.offers):
                 button.setText(words_of(self.offers[k][0]))
@@ -74,7 +71,7 @@ def words_of(remedy):
         return translate("ToolAxis", "Ball end D{}").format(length_text(float(remedy.value.partition(":")[2])))
     if remedy.name == "regions":
         return translate("ToolAxis", "Divide into sub-surfaces")
-    return translate("ToolAxis", "No limits")
+    return translate("ToolAxis", "Without limits")
 
 
 def use_remedy(inputs, remedy):
