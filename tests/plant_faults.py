@@ -91,7 +91,7 @@ FAULTS = (
           ("orient/test_sturz.py", "orient/test_machines_in_the_search.py")),
     Fault(CORE + "strategies/roughness/roughness.py", "** 2 * rest / 8)", "** 2 * rest / 4)",
           ("contact/test_roughness.py", "contact/test_section_width.py", "orient/test_multiscale.py")),
-    Fault(CORE + "bladed/counterparts.py", "point - apply_motion(matrix, face.evaluate(uv).point)",
+    Fault(CORE + "shape/counterparts.py", "point - apply_motion(matrix, face.evaluate(uv).point)",
           "point - face.evaluate(uv).point",
           ("partition/test_turned.py", "partition/test_blades.py", "partition/test_gaps.py",
            "partition/test_buried.py")),

@@ -19,7 +19,8 @@ from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning import pipeline
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.job.planning.rack import RackPlanner, _merge, _Screen, _Screened, _Waiting
+from toolaxis.job.planning.rack import RackPlanner, _merge, _Waiting
+from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -311,14 +312,14 @@ def test_what_was_not_begun_is_told_in_table_and_file(stopped: Plan, tmp_path: P
 
 def test_stopped_in_the_choice_of_the_next_tool_it_keeps_all_of_a_tool(monkeypatch: pytest.MonkeyPatch) -> None:
     """Found: the first face asked for the next tool, was stopped there, and took the others' operations with it."""
-    whole = _Screen.look_at
+    whole = RackScreening.look_at
 
-    def _stopped(screen: _Screen, face: ta.Face, begin: int) -> _Screened:
+    def _stopped(screen: RackScreening, face: ta.Face, begin: int) -> ScreenedFace:
         if begin:
             raise Cancelled("cancelled by the user")
         return whole(screen, face, begin)
 
-    monkeypatch.setattr(_Screen, "look_at", _stopped)
+    monkeypatch.setattr(RackScreening, "look_at", _stopped)
     made = ta.plan(two_sheets(), TOOLS, SCALLOP, faces=[1, 2], limits=UP, workers=1)
     assert made.outcome == "cancelled" and [op.face.label for op in made.operations if op.done] == ["1", "2"]
     assert whole_area(made) == pytest.approx(made.account.area) and made.account.not_begun > 24 * 2
@@ -394,11 +395,11 @@ def test_what_is_in_reach_of_some_tool_is_told_of_a_face() -> None:
     plan = ta.plan(part, TOOLS[1], SCALLOP, faces=[1], limits=UP, workers=1)
     job = PlanningJob(part, TOOLS[1], plan.inputs, None, (), np.zeros(3))
     face = part.face(1)
-    large, both = (_Screen([replace(job, tool=tool) for tool in some], [face]).reachable(face)
+    large, both = (RackScreening([replace(job, tool=tool) for tool in some], [face]).reachable(face)
                    for some in (TOOLS[:1], TOOLS))
     assert 0.75 * face.area < large < both <= face.area * (1 + 1e-9)
     below = replace(job, limits=intersect_limits(None, "cone:0,0,-1,20"))
-    assert _Screen([below], [face]).reachable(face) == 0.0
+    assert RackScreening([below], [face]).reachable(face) == 0.0
 
 
 def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -408,8 +409,8 @@ def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(monk
     jobs = [PlanningJob(part, tool, plan.inputs, None, (), np.zeros(3)) for tool in tools]
     face = part.face(1)
     half = face.trimmed((np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]]),))
-    anew = [_Screen(jobs, [face]).look_at(one, begin).chains for one in (face, half) for begin in (1, 2)]
-    screen, asked = _Screen(jobs, [face]), []
+    anew = [RackScreening(jobs, [face]).look_at(one, begin).chains for one in (face, half) for begin in (1, 2)]
+    screen, asked = RackScreening(jobs, [face]), []
     whole = ReachScreen.screen_promising
     monkeypatch.setattr(ReachScreen, "screen_promising", lambda *words: asked.append(words) or whole(*words))
     screen.keep({face: screen.look_at(face, 1)})

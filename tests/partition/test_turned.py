@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toolaxis.bladed.counterparts import best_motion, counterpart, off, turn_about, turn_piece
+from toolaxis.shape.counterparts import best_motion, counterpart, off, turn_about, turn_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 

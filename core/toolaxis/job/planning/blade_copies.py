@@ -7,7 +7,6 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.bladed.counterparts import apply_motion, turn_piece
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.clearance.gouge import least_distance
 from toolaxis.contact.clearance.queries import keeps_limits as decided
@@ -29,6 +28,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.search.path_check import COMPONENTS, prove
+from toolaxis.shape.counterparts import apply_motion, turn_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
@@ -273,12 +273,26 @@ def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) ->
     assert found.axis is not None
     axis = turn @ found.axis
     axis /= np.linalg.norm(axis)
-    carried = ToolPath(apply_motion(matrix, path.cc), apply_motion(matrix, path.cl), np.tile(axis, (len(path.cl), 1)),
-                       path.normal @ turn.T, path.kind, path.breaks)
     feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
     left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
     return Operation(op.number, piece, op.tool, replace(found, axis=axis, feed=feed, map=None, lobes=(), zones=(),
-                                               evaluations=1, reasons=(f"turned copy of {op.name}", *left)), carried)
+                                               evaluations=1, reasons=(f"turned copy of {op.name}", *left)),
+                     turn_path(path, matrix, axis))
+
+
+def turn_path(path: ToolPath, matrix: Array, axis: Array) -> ToolPath:
+    """A path with one fixed axis after a motion.
+
+    Parameters
+    ----------
+    path : ToolPath
+    matrix : (4, 4) array
+        Rigid motion, or one with a mirror.
+    axis : (3,) array
+        The moved axis, of length 1.
+    """
+    return ToolPath(apply_motion(matrix, path.cc), apply_motion(matrix, path.cl), np.tile(axis, (len(path.cl), 1)),
+                    path.normal @ matrix[:3, :3].T, path.kind, path.breaks)
 
 
 def _groups(task: FaceProblem, means: _Means) -> tuple[CheckSurfaces, ...]:

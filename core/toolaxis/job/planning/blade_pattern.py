@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.bladed.blade_gap import BladeGapPoints, ahead, nearness, reach_along_normal, widest
-from toolaxis.bladed.counterparts import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.bladed.find_blades import Bladed, NoPattern, blades_of
 from toolaxis.bladed.strips import strips
 from toolaxis.bladed.trim_buried import cut_back_covered
@@ -18,6 +17,7 @@ from toolaxis.job.planning.sub_surfaces import why_faceted
 from toolaxis.plan.blades import Blades, Gap, PlannedBlade
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import tight_fillet
+from toolaxis.shape.counterparts import Counterpart, best_motion, counterpart, off, turn_about
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
 from toolaxis.shape.part import PLAIN_KINDS, Body, Part

@@ -1,6 +1,7 @@
 """Sub-surfaces, axes and operations of one plan: what `toolaxis.plan` sets going."""
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
@@ -16,6 +17,7 @@ from toolaxis.job.planning.clean_up_zones import add_clean_up_zones
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
 from toolaxis.job.planning.face_by_face import compare_areas, is_better, loses_area, name_faces
+from toolaxis.job.planning.face_copies import carry_piece, copy_operation
 from toolaxis.job.planning.failures import fail_face, fail_operation
 from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
@@ -55,6 +57,7 @@ from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
+from toolaxis.skin.alike import AlikeFace
 from toolaxis.skin.join import take_apart
 from toolaxis.strategies.registry import strategy_of
 from toolaxis.strategies.strategy import Strategy
@@ -213,6 +216,43 @@ class PlanningJob:
         """
         return self._with_zones(self._plan_targets(targets, (), progress), progress)
 
+    def copy_operations(self, asked: Sequence[tuple[Operation, AlikeFace]],
+                        progress: Progress) -> list[Operation | None] | None:
+        """Operations moved to faces that are alike, with their clean-up zones: None for each that is refused there.
+
+        Parameters
+        ----------
+        asked : sequence of (Operation, AlikeFace)
+            Operations with a path, on the original or a piece of it.
+        progress : Progress
+
+        Returns
+        -------
+        list of Operation or None
+            In that order; None where the user stopped it.
+        """
+        pieces = [carry_piece(op, alike) for op, alike in asked]
+
+        def _copy(k: int, inner: Progress) -> Operation | None:
+            (op, alike), piece = asked[k], pieces[k]
+            if piece is None:
+                return None
+            inner.report(f"copy of face {op.face.label} on face {piece.label}", k, len(asked))
+            with limit_work(self._budget(piece)), suppress(OutOfWork):
+                return copy_operation(op, alike, piece, self.task(piece, inner), self.datum)
+            return None
+
+        done = abreast(_copy, len(asked), self.workers, progress)
+        if done.cancelled:
+            return None
+        rows = tuple(replace(op, face=piece, number=k + 1) for k, piece in enumerate(pieces)
+                     if piece is not None and (op := done.results.get(k)) is not None)
+        plan = self._with_zones(self._plan(rows, "complete", ()), progress)
+        if plan.outcome == "cancelled":
+            return None
+        made = {op.number: op for op in plan.operations}
+        return [made.get(k + 1) for k in range(len(asked))]
+
     def _with_zones(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the clean-up zones of its operations; a stopped one with those of what was finished."""
         if plan.outcome != "cancelled":
@@ -342,7 +382,7 @@ class PlanningJob:
         """How a face is divided by what axes reach; None where that is no use."""
         if tight_fillet(face, self.tool):
             return None
-        return divide_by_reach(self._task(face, progress), scene, progress.within(f"face {face.label}"))
+        return divide_by_reach(self.task(face, progress), scene, progress.within(f"face {face.label}"))
 
     def _alike(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
@@ -363,7 +403,7 @@ class PlanningJob:
                 tasks = []
                 for target in open_:
                     with about(target.face.label):
-                        tasks.append(self._task(target.face, progress))
+                        tasks.append(self.task(target.face, progress))
                 return together(tasks, progress.within("one axis")), targets
             except ToolAxisError:  # Cancelled among them
                 raise
@@ -390,7 +430,7 @@ class PlanningJob:
             standing = distances(faces[k], self.tool, self.part, self.obstacles)
             count = slim if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
             try:
-                return regions_of(self._task(faces[k], inner), count, progress=named, bosses=standing)
+                return regions_of(self.task(faces[k], inner), count, progress=named, bosses=standing)
             except Cancelled:
                 raise
             except ToolAxisError as reason:
@@ -423,7 +463,7 @@ class PlanningJob:
         ended: list[Target] = []
         for face in faces:
             try:
-                one = Divider(self._task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
+                one = Divider(self.task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
                 _ = one.best
                 every.append(one)
             except ToolAxisError:  # Cancelled among them
@@ -462,9 +502,12 @@ class PlanningJob:
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
-        more = _FOR_PASSES if self.asked_area > 0 else 0.0
-        with limit_work(Budget(self.inputs.limit, self._times_of_work(target.face), more)):
+        with limit_work(self._budget(target.face)):
             return self._with_axis(target, place, progress)
+
+    def _budget(self, face: Face) -> Budget:
+        """The work that a sub-surface is allowed."""
+        return Budget(self.inputs.limit, self._times_of_work(face), _FOR_PASSES if self.asked_area > 0 else 0.0)
 
     def _times_of_work(self, face: Face) -> float:
         """How many times the limit of work a sub-surface is allowed."""
@@ -485,7 +528,7 @@ class PlanningJob:
             found, path = Orientation(None), None
             given = target.given if target.given is not None and target.given.held else None
             if given is not None and not self._strategy.moves and self.inputs.method != "one":
-                found, path = plan_locked(self._task(face, inner), given,
+                found, path = plan_locked(self.task(face, inner), given,
                                           lambda task: self._strategy.plan(task, self.inputs))
             elif axis is not None and target.shared:
                 found, path = self._plan_with_shared_axis(target, inner)
@@ -511,7 +554,7 @@ class PlanningJob:
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
         assert target.axis is not None
-        job = self._task(target.face, progress)
+        job = self.task(target.face, progress)
         found, path = evaluate_given_axis(job, target.axis)
         if found.axis is not None:
             return found, path
@@ -527,11 +570,11 @@ class PlanningJob:
         if self._strategy.moves:  # in a comparison with a plan for least time, or along planes
             objective = "length" if self.inputs.objective == "time" else self.inputs.objective
             job = replace(self, inputs=replace(self.inputs, objective=objective, passes=ISO))
-            return self._strategy.plan(job._task(target.face, progress), self.inputs, target.axis)
+            return self._strategy.plan(job.task(target.face, progress), self.inputs, target.axis)
         known = [] if target.axis is None else [target.axis]
         if not target.shared:  # the axes that others share were tried before
             known += target.others
-        return self._strategy.plan(self._task(target.face, progress), self.inputs, np.array(known) if known else None)
+        return self._strategy.plan(self.task(target.face, progress), self.inputs, np.array(known) if known else None)
 
     @property
     def _index_length(self) -> float:
@@ -553,7 +596,14 @@ class PlanningJob:
         """The faces of the further bodies."""
         return tuple(face for body in self.bodies for face in body.faces)
 
-    def _task(self, face: Face, progress: Progress) -> FaceProblem:
+    def task(self, face: Face, progress: Progress) -> FaceProblem:
+        """What decides about an axis for a face, or a piece of one.
+
+        Parameters
+        ----------
+        face : Face
+        progress : Progress
+        """
         return search_task(face, self.tool, self.inputs.scallop, self.axis_limits, self.obstacles,
                            objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
                            part=self.part, allowance=self.inputs.allowance_of(face), tolerance=self.inputs.tolerance,
@@ -607,7 +657,7 @@ class PlannerOfFaces:
 
     def task(self, part: Part, face: Face, tool: Tool, progress: Progress) -> FaceProblem:
         """What decides about an axis."""
-        return replace(self._job(tool), part=part)._task(face, progress)
+        return replace(self._job(tool), part=part).task(face, progress)
 
     def search(self, part: Part, op: Operation, progress: Progress) -> Operation:
         """The operation, its axis searched."""

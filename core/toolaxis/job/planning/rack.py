@@ -3,40 +3,36 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import Cancelled
+from toolaxis.errors import Cancelled, fault
 from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better
+from toolaxis.job.planning.face_copies import refuse_copy
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob
+from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
-from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, LEFT_OPEN, Plan
+from toolaxis.plan.plan import CHANGE_SECONDS, LEFT_OPEN, Plan
 from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.regions.cells import FaceCells, screening_axes
-from toolaxis.regions.prices import widths
-from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.regions.scene import ReachScene
-from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of, choose_tools
+from toolaxis.regions.tool_choice import ToolChain, choose_tools
 from toolaxis.shape.face import Face
-from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.skin.alike import AlikeFace, find_alike_faces
 from toolaxis.skin.join import take_apart
 
 Array = NDArray[np.float64]
 
 #: Area below which what a tool leaves is not worth another one, mm^2.
 LEAST_AREA = 0.01
-#: Angle between the axes that are screened, rad, and cells of a face for it, about.
-APART, _CELLS = np.radians(20), 200
 #: Share of what a tool reaches of a face under any axis that it must reach under one to be asked for the whole face,
 #: and share of the face.
 WHOLE, MUCH = 0.8, 0.3
@@ -68,6 +64,8 @@ class _Waiting:
         Whether the tool reaches too little of it under one axis to be asked for all of it.
     axis : (3,) array or None
         The axis under which the choice of tools reckoned with it.
+    copies : tuple of AlikeFace
+        Faces that are alike the root, on which the same was done so far.
     """
 
     root: Face
@@ -76,6 +74,12 @@ class _Waiting:
     left_by: frozenset[int] = frozenset()
     in_pieces: bool = False
     axis: Array | None = None
+    copies: tuple[AlikeFace, ...] = ()
+
+    @property
+    def area(self) -> float:
+        """Area of what waits, mm^2, without copies."""
+        return self.root.trimmed(self.loops).area if self.loops else self.root.area
 
 
 @dataclass(eq=False)
@@ -94,6 +98,8 @@ class RackPlanner:
     most: int | None = None
     _done: list[Operation] = field(default_factory=list)
     _left_by: dict[int, frozenset[int]] = field(default_factory=dict)
+    #: By the place of an operation, and the label of a face that is alike, the place of the copy there.
+    _copied: dict[tuple[int, str], int] = field(default_factory=dict)
     _waiting: list[_Waiting] = field(default_factory=list)
     _rests: list[UnplannedArea] = field(default_factory=list)
     _used: set[int] = field(default_factory=set)
@@ -116,7 +122,7 @@ class RackPlanner:
         try:
             self._begin(faces, progress)
             for tool, job in enumerate(self.jobs):
-                if not self._with_tool(tool, progress.within(job.tool.shop_name)):
+                if not self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name)):
                     break
             else:
                 self._take_skins_apart(faces, progress.within("faces one by one"))
@@ -124,8 +130,9 @@ class RackPlanner:
         except Cancelled:
             pass
         with activate_progress(NO_PROGRESS):  # what is finished is kept
-            self._rests += [_rest_not_begun(one, one.root.trimmed(one.loops).area) for one in self._waiting
-                            if one.left_by]
+            for one in self._waiting:
+                if one.left_by:
+                    self._rests += _rests_not_begun(one, one.area)
             return self._put_together("cancelled")
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
@@ -134,33 +141,57 @@ class RackPlanner:
         pieces = smooth_pieces(faces, smallest)
         whole = [target.face for target in pieces if target.ended is None]
         self._done += [target.ended for target in pieces if target.ended is not None]
-        self._screen = _Screen(self.jobs, whole)
+        self._screen = RackScreening(self.jobs, whole)
+        alike = self._find_alike(whole)
+        originals = [face for k, face in enumerate(whole) if k not in alike]
+        copies = {face: tuple(one for one in alike.values() if one.original is face) for face in originals}
 
-        def _look_at(k: int, inner: Progress) -> _Screened:
-            inner.report("choice of tools", k, len(whole))
-            return self._screen.look_at(whole[k], 0)
+        def _look_at(k: int, inner: Progress) -> ScreenedFace:
+            inner.report("choice of tools", k, len(originals))
+            return self._screen.look_at(originals[k], 0)
 
-        found = abreast(_look_at, len(whole), self.jobs[0].workers, progress)
+        found = abreast(_look_at, len(originals), self.jobs[0].workers, progress)
         if found.cancelled:
             raise Cancelled("cancelled by the user")
-        self._done += [fail_face(1, whole[k], smallest, why) for k, why in found.faults.items()]
-        screened, chains = [whole[k] for k in found.results], [one.chains for one in found.results.values()]
-        self._screen.keep({whole[k]: one for k, one in found.results.items()})
-        choice = choose_tools(chains, CHANGE_SECONDS, self.most)
-        self._tell_time(sum(face.area for face in screened), sum(one.seconds for one in choice.chains), progress)
+        for k, why in found.faults.items():
+            faces = (originals[k], *(one.face for one in copies[originals[k]]))
+            self._done += [fail_face(1, face, smallest, why) for face in faces]
+        screened, chains = [originals[k] for k in found.results], [one.chains for one in found.results.values()]
+        self._screen.keep({originals[k]: one for k, one in found.results.items()})
+        counts = [1 + len(copies[face]) for face in screened]
+        every = [one for one, count in zip(chains, counts, strict=True) for _ in range(count)]
+        choice = choose_tools(every, CHANGE_SECONDS, self.most)
+        chosen = [choice.chains[k] for k in np.cumsum([0, *counts[:-1]])] if counts else []
+        area = sum(face.area * count for face, count in zip(screened, counts, strict=True))
+        self._tell_time(area, sum(one.seconds for one in choice.chains), progress)
         self._used = set(choice.tools)
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
         allowed = self._allowed
         scene = scene_of(self.jobs[0])
-        for face, chain in zip(screened, choice.chains, strict=True):
+        for face, chain in zip(screened, chosen, strict=True):
             if not chain.tools and (refused := self._refuse(face, scene)) is not None:
                 self._done.append(refused)
+                # What is out of reach here need not be so among other surroundings: each proof is its own.
+                self._waiting += [_Waiting(one.face, (), max(allowed)) for one in copies[face]]
                 continue
             # Where the screening sees no way, the smallest tool is asked: it tells why.
             tool = chain.tools[0] if chain.tools else max(allowed)
             self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain),
-                                          axis=self._screen.first_axis(chain)))
+                                          axis=self._screen.first_axis(chain), copies=copies[face]))
+
+    def _find_alike(self, faces: Sequence[Face]) -> dict[int, AlikeFace]:
+        """Those of the faces that are alike others, by their places; none where the program fails on them."""
+        job = self.jobs[0]
+        try:
+            reach = max(one.tool.radius for one in self.jobs)
+            return find_alike_faces(job.part, faces, reach, mirrored=job.inputs.direction == "zigzag")
+        except Cancelled:
+            raise
+        except Exception as reason:
+            words = f"faces that are alike are planned each by itself: {fault(reason).sentence}"
+            self.jobs = [replace(one, part=one.part.with_warnings(words)) for one in self.jobs]
+            return {}
 
     def _tell_time(self, area: float, seconds: float, progress: Progress) -> None:
         """Tell before all else where cutting will take very long: of a large part with small tools."""
@@ -189,12 +220,17 @@ class RackPlanner:
         """Numbers of the tools that may be used: all, or those that were chosen where their number is limited."""
         return set(range(len(self.jobs))) if self.most is None or not self._used else set(self._used)
 
+    def _with_tool_to_the_end(self, tool: int, progress: Progress) -> bool:
+        """Plan all that waits for a tool, copies that are refused by themselves; False where the user stopped it."""
+        while any(one.tool == tool for one in self._waiting):
+            if not self._with_tool(tool, progress):
+                return False
+        return True
+
     def _with_tool(self, tool: int, progress: Progress) -> bool:
-        """Plan all that waits for a tool; False where the user stopped it."""
+        """Plan what waits for a tool; False where the user stopped it."""
         now = {self._name(one): one for one in _merge([one for one in self._waiting if one.tool == tool])}
         self._waiting = [one for one in self._waiting if one.tool != tool]
-        if not now:
-            return True
         targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, others=self._axes_of(one),
                           in_pieces=one.in_pieces) for label, one in now.items()]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
@@ -202,9 +238,11 @@ class RackPlanner:
         origins = [_origin(op.face, now) for op in made.operations]
         rests = [_rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
         following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
-        if following is not None:
-            for op, origin, rest, chains in zip(made.operations, origins, rests, following, strict=True):
-                self._take_over(op, origin, rest, chains)
+        copied = None if following is None else self._copy(made.operations, origins, tool, progress)
+        if following is not None and copied is not None:
+            rows = zip(made.operations, origins, rests, following, copied, strict=True)
+            for op, origin, rest, chains, copies in rows:
+                self._take_over(op, origin, self._best_of(chains), rest, copies)
             return True
         for op, origin in zip(made.operations, origins, strict=True):
             self._keep_last(op, origin, tool)
@@ -214,21 +252,21 @@ class RackPlanner:
 
     def _keep_last(self, op: Operation, origin: _Waiting, tool: int) -> None:
         """Keep an operation when the user has stopped the plan: no smaller tool is asked for what it leaves."""
-        self._left_by[len(self._done)] = origin.left_by
-        self._done.append(op)
+        self._keep(op, origin.left_by)
         area = sum(zone.area for zone in op.zones if zone.at_wall)
         if op.done and area >= LEAST_AREA and tool < max(self._allowed):
-            self._rests.append(_rest_not_begun(origin, area))
+            self._rests.append(_rest_not_begun(origin.root, area))
 
     def _count_unfinished(self, now: Mapping[str, _Waiting], finished: Sequence[Operation]) -> None:
         """Tell how much of rests a tool was not done with when the user stopped it."""
-        for label, one in now.items():
+        for one in now.values():
             if not one.left_by:  # that is seen from the faces themselves
                 continue
             done = sum(op.face.area for op in finished if _origin(op.face, now) is one)
-            left = one.root.trimmed(one.loops, label).area - done
+            left = one.area - done
             if left >= LEAST_AREA:
-                self._rests.append(_rest_not_begun(one, left))
+                self._rests.append(_rest_not_begun(one.root, left))
+            self._rests += [_rest_not_begun(alike.face, one.area) for alike in one.copies]
 
     def _axes_of(self, one: _Waiting) -> tuple[Array, ...]:
         """Axes of earlier operations on the same face, those first that left what waits, and not too many; then that of
@@ -256,7 +294,7 @@ class RackPlanner:
         if tool + 1 >= len(self.jobs):
             return [()] * len(rests)
 
-        def _look_at(k: int, inner: Progress) -> _Screened | None:
+        def _look_at(k: int, inner: Progress) -> ScreenedFace | None:
             inner.report("choice of tools", k, len(rests))
             rest = rests[k]
             if rest is None or rest.area < LEAST_AREA:
@@ -271,16 +309,50 @@ class RackPlanner:
         self._screen.keep({rest: one for rest, one in seen if rest is not None and one is not None})
         return [() if one is None else one.chains for _, one in seen]
 
-    def _take_over(self, op: Operation, origin: _Waiting, rest: Face | None, chains: Sequence[ToolChain]) -> None:
-        """Keep an operation, and send what it leaves to the next tool."""
-        following = self._best_of(chains)
-        if op.done or following is None:
-            self._left_by[len(self._done)] = origin.left_by
-            self._done.append(op)
+    def _copy(self, operations: Sequence[Operation], origins: Sequence[_Waiting], tool: int,
+              progress: Progress) -> list[dict[str, Operation]] | None:
+        """What became of each operation on the faces that are alike, by their labels; None where the user stopped it.
+
+        A face on which the operation is refused is missing.
+        """
+        job = self.jobs[tool]
+        asked = [(k, alike) for k, op in enumerate(operations) if op.done for alike in origins[k].copies]
+        made = job.copy_operations([(operations[k], alike) for k, alike in asked], progress)
+        if made is None:
+            return None
+        found: list[dict[str, Operation]] = [{} for _ in operations]
+        for (k, alike), other in zip(asked, made, strict=True):
+            if other is not None and other.done:
+                found[k][alike.face.label] = other
+        for op, origin, one in zip(operations, origins, found, strict=True):
+            if not op.done and not op.failed and job.axis_limits is None and not job.bodies:
+                one.update({alike.face.label: refuse_copy(op, alike.carry_piece(op.face)) for alike in origin.copies
+                            if alike.everywhere})
+        return found
+
+    def _take_over(self, op: Operation, origin: _Waiting, following: ToolChain | None, rest: Face | None,
+                   copies: Mapping[str, Operation]) -> None:
+        """Keep an operation and its copies, and send what it leaves to the next tool."""
+        kept = op.done or following is None
+        place = self._keep(op, origin.left_by) if kept else -1
+        still = tuple(alike for alike in origin.copies if not kept or alike.face.label in copies)
+        for alike in origin.copies:
+            left_by = frozenset(self._copied[one, alike.face.label] for one in origin.left_by)
+            if alike not in still:
+                self._waiting.append(_wait_alone(op, origin, alike, left_by))
+            elif kept:
+                self._copied[place, alike.face.label] = self._keep(copies[alike.face.label], left_by)
+            self._steps[alike.face.label] = max(self._steps[alike.face.label], self._steps[origin.root.label])
         if rest is not None and following is not None:
-            left_by = origin.left_by | {len(self._done) - 1} if op.done else origin.left_by
+            left_by = origin.left_by | {place} if op.done else origin.left_by
             self._waiting.append(_Waiting(origin.root, rest.outline, following.tools[0], left_by,
-                                          _in_pieces(following), self._screen.first_axis(following)))
+                                          _in_pieces(following), self._screen.first_axis(following), still))
+
+    def _keep(self, op: Operation, left_by: frozenset[int]) -> int:
+        """Keep an operation; its place."""
+        self._left_by[len(self._done)] = left_by
+        self._done.append(op)
+        return len(self._done) - 1
 
     def _best_of(self, chains: Sequence[ToolChain]) -> ToolChain | None:
         """The tools that finish what another one left; None where no smaller one reaches anything of it."""
@@ -379,9 +451,23 @@ def outcome_of_rack(operations: Sequence[Operation]) -> str:
     return "incomplete" if lost or account.open > LEFT_OPEN * account.area else "complete"
 
 
-def _rest_not_begun(one: _Waiting, area: float) -> UnplannedArea:
-    """Area that larger tools leave of a sub-surface, mm^2, and for which no smaller one was asked before the stop."""
-    return UnplannedArea(one.root.number, one.root.label, area, False, REST)
+def _rest_not_begun(face: Face, area: float) -> UnplannedArea:
+    """Area that larger tools leave of a face, mm^2, and for which no smaller one was asked before the stop."""
+    return UnplannedArea(face.number, face.label, area, False, REST)
+
+
+def _rests_not_begun(one: _Waiting, area: float) -> list[UnplannedArea]:
+    """The same of a sub-surface and those of the faces that are alike."""
+    return [_rest_not_begun(face, area) for face in (one.root, *(alike.face for alike in one.copies))]
+
+
+def _wait_alone(op: Operation, origin: _Waiting, alike: AlikeFace, left_by: frozenset[int]) -> _Waiting:
+    """What waits on a face where an operation that is done on its like is refused, or may have an axis of its own."""
+    whole = op.face.label == origin.root.label
+    loops = () if whole else alike.carry_loops(op.face.outline)
+    axis = origin.axis if op.orientation.axis is None else op.orientation.axis
+    moved = None if axis is None else alike.matrix[:3, :3] @ axis
+    return _Waiting(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, moved)
 
 
 def _rest_of(op: Operation, origin: _Waiting) -> Face | None:
@@ -402,9 +488,9 @@ def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
 
     Areas tell by that what is counted already.
     """
-    found: dict[tuple[int, bool], _Waiting] = {}
+    found: dict[tuple[int, bool, tuple[str, ...]], _Waiting] = {}
     for one in some:
-        key = id(one.root), bool(one.left_by)
+        key = id(one.root), bool(one.left_by), tuple(alike.face.label for alike in one.copies)
         before = found.get(key)
         found[key] = one if before is None else replace(
             one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
@@ -418,127 +504,3 @@ def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
     while label not in named:
         label = label[:-1]
     return named[label]
-
-
-class _ReachBits(NamedTuple):
-    """Which cells of a face tools reach under axes, small enough to be kept for every face.
-
-    begin : number of the first of the tools
-    shape : tools, axes, cells
-    bits : of an array of bool of that shape, eight to a byte
-    """
-
-    begin: int
-    shape: tuple[int, ...]
-    bits: NDArray[np.uint8]
-
-    def from_tool(self, begin: int) -> NDArray[np.bool_]:
-        """The array, (tools, axes, cells), from a tool on."""
-        count = int(np.prod(self.shape))
-        whole = np.unpackbits(self.bits, count=count).astype(bool).reshape(self.shape)
-        return np.asarray(whole[begin - self.begin:])
-
-
-class _Screened(NamedTuple):
-    """What the screening says of a face.
-
-    chains : of tools, the cheapest first
-    reach : what they stand on
-    """
-
-    chains: tuple[ToolChain, ...]
-    reach: _ReachBits
-
-
-class _Screen:
-    """What tools reach of faces, and what it takes, as the screening sees it.
-
-    Parameters
-    ----------
-    jobs : sequence of PlanningJob
-    faces : sequence of Face
-        From whose normals the axes are taken.
-    """
-
-    def __init__(self, jobs: Sequence[PlanningJob], faces: Sequence[Face]) -> None:
-        first = jobs[0]
-        self._jobs = jobs
-        self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
-                                    first.inputs.allowance)
-        #: What was found of faces, by their places.
-        self._known: dict[tuple[NurbsSurface, bytes], _ReachBits] = {}
-        self._axes = screening_axes([self._cells(face) for face in faces], first.axis_limits, APART)
-
-    def _cells(self, face: Face) -> FaceCells:
-        return FaceCells.few(face, max(self._jobs[-1].tool.radius, float(np.sqrt(face.area / _CELLS))))
-
-    def look_at(self, face: Face, begin: int) -> _Screened:
-        """What tools, from one on, may do of a face.
-
-        Parameters
-        ----------
-        face : Face
-        begin : int
-        """
-        prices, facing = self._prices(face, begin)
-        held = np.isfinite(prices.seconds)
-        chains = tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
-                       if one.tools else one for one in chains_of(prices, INDEX_SECONDS))
-        return _Screened(chains, _ReachBits(begin, held.shape, np.packbits(held)))
-
-    def keep(self, screened: Mapping[Face, _Screened]) -> None:
-        """Remember what was found: a face that a tool cannot machine at all waits for the next one as it is.
-
-        Parameters
-        ----------
-        screened : mapping of Face to _Screened
-        """
-        for face, one in screened.items():
-            before = self._known.get(_place_of(face))
-            if before is None or one.reach.begin < before.begin:
-                self._known[_place_of(face)] = one.reach
-
-    def reachable(self, face: Face) -> float:
-        """Area of a face that some tool reaches under some axis, mm^2.
-
-        Parameters
-        ----------
-        face : Face
-        """
-        prices, _ = self._prices(face, 0)
-        return float(prices.area @ np.isfinite(prices.seconds).any(axis=(0, 1)))
-
-    def _prices(self, face: Face, begin: int) -> tuple[FacePrices, NDArray[np.intp]]:
-        """What it takes tools, from one on, to machine cells of a face, and the numbers of the axes that see any."""
-        jobs = self._jobs[begin:]
-        inputs = jobs[0].inputs
-        tools = [job.tool for job in jobs]
-        cells = self._cells(face)
-        facing = np.flatnonzero((cells.normal @ self._axes.T > 0).any(axis=0))
-        axes = self._axes[facing]
-        if not len(axes) or not len(cells):
-            return FacePrices(np.full((len(jobs), len(axes), len(cells)), np.inf), cells.area), facing
-        wide = widths(cells, tools, axes, inputs.scallop, inputs.allowance_of(face), inputs.step_over)
-        pace = np.array([job.inputs.at_rates_of(job.tool).feedrate / 60 for job in jobs])[:, None, None]
-        known = self._known.get(_place_of(face))
-        if known is not None and known.begin <= begin and known.shape[1:] == wide.shape[1:]:
-            held = known.from_tool(begin)
-        else:
-            scene = replace(self._scene, allowance=inputs.allowance_of(face))
-            held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
-        seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
-        return FacePrices(seconds, cells.area), facing
-
-    def first_axis(self, chain: ToolChain) -> Array | None:
-        """The axis of the first tool of a chain, (3,); None without a tool.
-
-        Parameters
-        ----------
-        chain : ToolChain
-        """
-        return self._axes[chain.axis] if chain.tools else None
-
-
-def _place_of(face: Face) -> tuple[NurbsSurface, bytes]:
-    """What tells a face from others: its surface, and where on that it lies."""
-    return face.surface, b"".join(loop.tobytes() for loop in face.outline)

@@ -114,7 +114,7 @@ def _samples(face: Face, count: int) -> Array:
 
 def _counterpart_by_parameters(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
     """Another face as the counterpart, where one of the eight ways to lay their parameters onto each other fits."""
-    charts = _eight(face.surface.domain, other.surface.domain)
+    charts = eight_rules(face.surface.domain, other.surface.domain)
     away = [float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max()) for chart in charts]
     k = int(np.argmin(away))
     inner = face.grid(_GRID, _GRID)
@@ -136,8 +136,14 @@ def _counterpart_by_nearest_points(face: Face, uv: Array, points: Array, other: 
     return Counterpart(other, chart if off <= distance + _AGREE * face.diagonal else None, distance)
 
 
-def _eight(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[ParameterRule]:
-    """The ways to lay one rectangle of parameters onto another."""
+def eight_rules(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[ParameterRule]:
+    """The eight ways to lay one rectangle of parameters onto another.
+
+    Parameters
+    ----------
+    here, there : pair of (float, float)
+        Ranges of u and v.
+    """
     found = []
     for swap in (False, True):
         for senses in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
@@ -212,7 +218,7 @@ def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, labe
     """
     target = other.face
     if other.chart is None:
-        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(_fine(loop)).point)).uv
+        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(fine(loop)).point)).uv
                       for loop in piece.outline)
         made = target.trimmed(loops, label)
         uv = _samples(piece, _DENSE)
@@ -223,8 +229,13 @@ def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, labe
     return found.trimmed(found.trims, label), float(np.linalg.norm(gap, axis=1).max())
 
 
-def _fine(loop: Array) -> Array:
-    """A loop with 16 points for each of its sides where it has few."""
+def fine(loop: Array) -> Array:
+    """A loop with more points along its sides where it has few.
+
+    Parameters
+    ----------
+    loop : (m, 2) array
+    """
     share = np.linspace(0, 1, max(1, 64 // len(loop)), endpoint=False)[:, None, None]
     following = np.roll(loop, -1, axis=0)
     return np.asarray((loop + share * (following - loop)).swapaxes(0, 1).reshape(-1, 2))
