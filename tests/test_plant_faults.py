@@ -37,7 +37,7 @@ def test_every_package_has_a_fault():
     packages = {path.name for path in core.iterdir() if (path / "__init__.py").is_file()}
     assert packages == {fault.file.split("/")[2] for fault in FAULTS.FAULTS if fault.file.startswith("core/")}
     assert any(fault.file.startswith("workbench/") for fault in FAULTS.FAULTS)
-    assert len(FAULTS.FAULTS) == 33
+    assert len(FAULTS.FAULTS) == 34
 
 
 def test_a_text_that_is_gone_is_an_error_that_names_its_file(tmp_path):
