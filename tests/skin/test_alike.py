@@ -155,6 +155,29 @@ def test_copies_are_planned_once_and_pass_the_judge() -> None:
     assert ta.verify(made).passed
 
 
+def test_a_face_with_another_allowance_is_no_copy() -> None:
+    """Its passes would leave what the other one is to have left."""
+    part = Part.from_faces([patch(), patch("", SHIFT), patch("back", MIRROR)])
+    made = ta.plan(part, TOOLS, 0.2, faces=[1, 2, 3], workers=1, allowance=0.3, allowance_on={2: 0.0})
+    moved = {op.face.number for op in made.operations if op.orientation.evaluations == 1}
+    assert moved == {3} and ta.verify(made).passed
+
+
+def test_climb_milling_is_not_mirrored() -> None:
+    part = Part.from_faces([patch(), patch("", SHIFT), patch("back", MIRROR)])
+    made = ta.plan(part, TOOLS, 0.2, faces=[1, 2, 3], workers=1, direction="climb")
+    assert {op.face.number for op in made.operations if op.orientation.evaluations == 1} == {2}
+
+
+def test_a_longer_face_is_not_the_same_though_the_shorter_one_lies_on_it() -> None:
+    """The passes of a shorter one would not come to its end."""
+    def cut_off(end: float) -> Face:
+        return patch().trimmed((np.array([[7.0, 0.0], [end, 0.0], [end, 1.0], [7.0, 1.0]]),))
+
+    assert not find(cut_off(9.9), patch("", SHIFT))
+    assert not find(cut_off(9.9998), patch("", SHIFT))[1].same, "by 6 um"
+
+
 def test_a_copy_that_something_is_in_the_way_of_is_planned_by_itself() -> None:
     """A lid of another body over the second sheet, which is no face of the part, keeps the moved axis from it."""
     bar = np.array([[[-5.0, 60.0, 20.0], [-5.0, 100.0, 20.0]], [[40.0, 60.0, 20.0], [40.0, 100.0, 20.0]]])

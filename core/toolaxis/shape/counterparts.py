@@ -13,6 +13,8 @@ from toolaxis.shape.nearest import nearest
 
 Array = NDArray[np.float64]
 
+#: Passes on a face serve another one as they are where the moved face is so close to it, mm.
+SAME = 1e-4
 #: Greatest distance between a turned face and its counterpart, as a share of the face's diagonal.
 NEAR = 0.02
 #: Two charts agree where points of equal parameters are this much closer than that, as a share of the diagonal.
@@ -95,7 +97,7 @@ def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpar
     **Properties**: 1. reparametrising the other face (u and v exchanged, reversed, rescaled) changes the chart only;
     2. a face is its own counterpart under the identity.
     """
-    uv = _samples(face, _GRID)
+    uv = places_of(face, _GRID)
     points = apply_motion(matrix, face.evaluate(uv).point)
     close = [other for other in others
              if np.linalg.norm(other.box.mean(axis=0) - points.mean(axis=0)) <= 0.2 * face.diagonal]
@@ -106,8 +108,15 @@ def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpar
     return None
 
 
-def _samples(face: Face, count: int) -> Array:
-    """Parameters inside a face and on its border."""
+def places_of(face: Face, count: int) -> Array:
+    """Parameters inside a face and on its border, (n, 2).
+
+    Parameters
+    ----------
+    face : Face
+    count : int
+        Places each way; about four times as many lie on the border.
+    """
     border = np.concatenate(face.outline)
     return np.concatenate([face.grid(count, count), border[::max(1, len(border) // (4 * count))]])
 
@@ -174,11 +183,25 @@ def best_motion(matrix: Array, pairs: Sequence[tuple[Face, Counterpart]]) -> Arr
             there.append(other.face.evaluate(other.chart(uv)).point)
     if sum(map(len, here)) < 3:
         return matrix
-    a, b = np.concatenate(here), np.concatenate(there)
-    u, _, vt = np.linalg.svd((a - a.mean(axis=0)).T @ (b - b.mean(axis=0)))
-    turn = (vt.T * [1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+    return fit_motion(np.concatenate(here), np.concatenate(there))
+
+
+def fit_motion(here: Array, there: Array, mirrored: bool = False) -> Array:
+    """The rigid motion that brings points closest to others, (4, 4).
+
+    Parameters
+    ----------
+    here, there : (n, 3) array
+        mm
+    mirrored : bool
+        Whether it is one with a mirror.
+    """
+    own, others = here.mean(axis=0), there.mean(axis=0)
+    u, _, vt = np.linalg.svd((here - own).T @ (there - others))
+    side = np.sign(np.linalg.det(vt.T @ u.T))
+    turn = (vt.T * [1, 1, -side if mirrored else side]) @ u.T
     found = np.eye(4)
-    found[:3, :3], found[:3, 3] = turn, b.mean(axis=0) - turn @ a.mean(axis=0)
+    found[:3, :3], found[:3, 3] = turn, others - turn @ own
     return found
 
 
@@ -193,7 +216,7 @@ def off(face: Face, other: Counterpart, matrix: Array) -> float:
     matrix : (4, 4) array
     """
     assert other.chart is not None
-    uv = _samples(face, _DENSE)
+    uv = places_of(face, _DENSE)
     there = other.chart(uv)
     gap = other.face.evaluate(there).point - apply_motion(matrix, face.evaluate(uv).point)
     return float(np.abs((gap * other.face.normal(there)).sum(axis=1)).max())
@@ -218,19 +241,19 @@ def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, labe
     """
     target = other.face
     if other.chart is None:
-        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(fine(loop)).point)).uv
+        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(refine_loop(loop)).point)).uv
                       for loop in piece.outline)
         made = target.trimmed(loops, label)
-        uv = _samples(piece, _DENSE)
+        uv = places_of(piece, _DENSE)
         return made, float(nearest(target, apply_motion(matrix, piece.evaluate(uv).point)).distance.max())
     found = target if piece is whole else target.trimmed(_loops(piece, whole, target, other.chart), label)
-    uv = _samples(piece, _DENSE)
+    uv = places_of(piece, _DENSE)
     gap = target.evaluate(other.chart(uv)).point - apply_motion(matrix, piece.evaluate(uv).point)
     return found.trimmed(found.trims, label), float(np.linalg.norm(gap, axis=1).max())
 
 
-def fine(loop: Array) -> Array:
-    """A loop with more points along its sides where it has few.
+def refine_loop(loop: Array) -> Array:
+    """A loop with more places along its sides where it has few corners: at least 33.
 
     Parameters
     ----------

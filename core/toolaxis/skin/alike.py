@@ -8,7 +8,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.shape.counterparts import Counterpart, ParameterRule, apply_motion, eight_rules, fine, turn_piece
+from toolaxis.shape.counterparts import (
+    SAME,
+    Counterpart,
+    ParameterRule,
+    apply_motion,
+    eight_rules,
+    fit_motion,
+    places_of,
+    refine_loop,
+    turn_piece,
+)
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.shape.part import Part
@@ -16,13 +26,11 @@ from toolaxis.skin.view_surface import ViewSurface
 
 Array = NDArray[np.float64]
 
-#: Greatest distance of a moved face from the one that it is the same as, mm.
-SAME = 1e-4
 #: Greatest distance of a moved face from one that it is alike, mm, and as a share of the smaller one's diagonal: blends
 #: of one radius differ by more than rounding where a CAD program made each of them by itself.
 _ALIKE, _OF_SIZE = 0.05, 2e-3
-#: By how much areas and lengths of borders of alike faces may differ, as a share: they are integrated.
-_SIZE = 1e-3
+#: By how much areas and lengths of borders of alike faces may differ, as a share: less than may stay high of a face.
+_SIZE = 3e-4
 #: How far a neighbour may lie beside the moved border, besides twice as far as its like does there, mm.
 _BESIDE = 1e-3
 #: Places of a face, about, from which what else lies around is looked for.
@@ -78,7 +86,7 @@ class AlikeFace:
         """
         if self.rule is not None:
             return tuple(self.rule(loop) for loop in loops)
-        return tuple(_places_on(self.face, apply_motion(self.matrix, self.original.evaluate(fine(loop)).point))
+        return tuple(_places_on(self.face, apply_motion(self.matrix, self.original.evaluate(refine_loop(loop)).point))
                      for loop in loops)
 
     def carry_piece(self, piece: Face) -> Face:
@@ -149,7 +157,7 @@ class _Size(NamedTuple):
 
 
 def _size_of(face: Face) -> _Size:
-    around = [face.evaluate(fine(loop)).point for loop in face.outline]
+    around = [face.evaluate(refine_loop(loop)).point for loop in face.outline]
     border = sum(float(np.linalg.norm(np.roll(line, -1, axis=0) - line, axis=1).sum()) for line in around)
     return _Size(face.area, border, len(face.members), len(face.outline))
 
@@ -164,8 +172,7 @@ class _SampledFace(NamedTuple):
     @classmethod
     def of(cls, face: Face) -> "_SampledFace":
         """Places inside of a face and on its border."""
-        border = np.concatenate(face.outline)
-        uv = np.concatenate([face.grid(_GRID, _GRID), border[::max(1, len(border) // (4 * _GRID))]])
+        uv = places_of(face, _GRID)
         return cls(uv, face.evaluate(uv).point, face.normal(uv))
 
 
@@ -201,10 +208,14 @@ class _MotionSearch:
         return None
 
     def _alike(self, face: Face, other: Face, matrix: Array, number: int) -> AlikeFace | None:
-        apart = self._distance(face, other, matrix)
+        """How another face is alike by a motion, which has or gets a number; None where it is not."""
+        back = np.asarray(np.linalg.inv(matrix), dtype=float)
+        apart = max(self._distance(face, other, matrix), self._distance(other, face, back))
         if not np.isfinite(apart):
             return None
-        if not self._everywhere.get(number, False) and not self._surroundings_fit(face, other, matrix, apart):
+        if not self._everywhere.get(number, False) and not (
+                self._neighbours_fit(face, other, matrix, apart) and self._others_fit(face, other, matrix, apart)
+                and self._others_fit(other, face, back, apart)):
             return None
         if number not in self._everywhere:
             self._everywhere[number] = self._keeps_part(matrix)
@@ -222,7 +233,7 @@ class _MotionSearch:
             return self._distance_of_skins(face, other, matrix)
         samples = self._samples_of(face)
         points = apply_motion(matrix, samples.point)
-        low, high = _roomy_box(other, SAME)
+        low, high = _roomy_box(other, _most_apart(face))
         if (points < low).any() or (points > high).any():
             return np.inf
         found = nearest(other, points, 24)
@@ -267,16 +278,10 @@ class _MotionSearch:
         samples = self._samples_of(face)
         for rule in eight_rules(face.surface.domain, other.surface.domain):
             points = other.evaluate(rule(samples.uv)).point
-            for sign in (1.0, -1.0) if self.mirrored else (1.0,):
-                matrix = _fit_motion(samples.point, points, sign)
+            for mirrored in (False, True) if self.mirrored else (False,):
+                matrix = fit_motion(samples.point, points, mirrored)
                 if np.linalg.norm(apply_motion(matrix, samples.point) - points, axis=1).max() <= _most_apart(face):
                     yield matrix
-
-    def _surroundings_fit(self, face: Face, other: Face, matrix: Array, apart: float) -> bool:
-        """Whether neighbours and what else lies within reach of two faces are alike too."""
-        back = np.asarray(np.linalg.inv(matrix), dtype=float)
-        return self._neighbours_fit(face, other, matrix, apart) and self._others_fit(face, other, matrix, apart) \
-            and self._others_fit(other, face, back, apart)
 
     def _neighbours_fit(self, face: Face, other: Face, matrix: Array, apart: float) -> bool:
         """Whether neighbours have, at the border, the normals that those of the other face have there."""
@@ -374,16 +379,6 @@ def _has_normals(face: Face, points: Array, normals: Array, room: Array) -> bool
     if (found.distance > room).any():
         return False
     return bool((face.normal(found.uv) * normals).sum(axis=1).min() >= _ONE_WAY)
-
-
-def _fit_motion(here: Array, there: Array, sign: float) -> Array:
-    """The motion, (4, 4), that brings points (n, 3) closest to others, with a mirror where the sign is -1."""
-    own, others = here.mean(axis=0), there.mean(axis=0)
-    u, _, vt = np.linalg.svd((here - own).T @ (there - others))
-    turn = (vt.T * [1.0, 1.0, sign * np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
-    found = np.eye(4)
-    found[:3, :3], found[:3, 3] = turn, others - turn @ own
-    return found
 
 
 def _places_on(face: Face, points: Array) -> Array:

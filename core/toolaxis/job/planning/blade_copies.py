@@ -28,7 +28,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.messages import sentence
 from toolaxis.search.path_check import COMPONENTS, prove
-from toolaxis.shape.counterparts import apply_motion, turn_piece
+from toolaxis.shape.counterparts import SAME, apply_motion, turn_piece
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
@@ -37,8 +37,6 @@ Array = NDArray[np.float64]
 #: Operations of one blade, and for each the number of the one that it copies; 0 where its axis was searched anew.
 _OnBlade: TypeAlias = tuple[list[Operation], list[int]]
 
-#: A turned path is taken as it is where the turned face is so close to the real one, mm.
-SAME = 1e-4
 #: By how much figures of a copy may be worse than the original's before they are measured anew, mm.
 _SLACK, _FINER = 0.01, 1e-4
 

@@ -167,25 +167,30 @@ class RackPlanner:
         self._used = set(choice.tools)
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
-        allowed = self._allowed
         scene = scene_of(self.jobs[0])
         for face, chain in zip(screened, chosen, strict=True):
-            if not chain.tools and (refused := self._refuse(face, scene)) is not None:
-                self._done.append(refused)
-                # What is out of reach here need not be so among other surroundings: each proof is its own.
-                self._waiting += [_Waiting(one.face, (), max(allowed)) for one in copies[face]]
+            if chain.tools:
+                self._waiting.append(_Waiting(face, (), chain.tools[0], in_pieces=_in_pieces(chain),
+                                              axis=self._screen.first_axis(chain), copies=copies[face]))
                 continue
-            # Where the screening sees no way, the smallest tool is asked: it tells why.
-            tool = chain.tools[0] if chain.tools else max(allowed)
-            self._waiting.append(_Waiting(face, (), tool, in_pieces=bool(chain.tools) and _in_pieces(chain),
-                                          axis=self._screen.first_axis(chain), copies=copies[face]))
+            for one in (face, *(alike.face for alike in copies[face])):  # each stands among other surroundings
+                refused = self._refuse(one, scene)
+                if refused is not None:
+                    self._done.append(refused)
+                else:  # the screening sees no way, and the smallest tool tells why
+                    self._waiting.append(_Waiting(one, (), max(self._allowed)))
 
     def _find_alike(self, faces: Sequence[Face]) -> dict[int, AlikeFace]:
-        """Those of the faces that are alike others, by their places; none where the program fails on them."""
+        """Those of the faces that are alike others with the same allowance, by their places.
+
+        None where the program fails on them.  A mirror would make climb milling of conventional milling.
+        """
         job = self.jobs[0]
+        left_on = job.inputs.allowance_of
         try:
             reach = max(one.tool.radius for one in self.jobs)
-            return find_alike_faces(job.part, faces, reach, mirrored=job.inputs.direction == "zigzag")
+            found = find_alike_faces(job.part, faces, reach, mirrored=job.inputs.direction == "zigzag")
+            return {k: one for k, one in found.items() if left_on(one.face) == left_on(one.original)}
         except Cancelled:
             raise
         except Exception as reason:
