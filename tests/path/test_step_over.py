@@ -1,5 +1,6 @@
 """Where the next pass goes: past jumps of the strip width, and not on for ever where strips are next to nothing."""
 
+from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
@@ -92,3 +93,39 @@ def test_lines_beside_the_material_borrow_the_strips_of_their_neighbours() -> No
     assert made[[0, 3, 5]].tolist() == [[2.0, 3.0], [1.0, 3.0], [1.0, 4.0]]
     assert made[[1, 2, 4]].tolist() == halves[[1, 2, 4]].tolist(), "a line on the material without a strip keeps none"
     assert np.array_equal(_borrow(np.zeros((3, 2)), np.ones(3, dtype=bool)), np.zeros((3, 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Band(IsoChart):
+    """A narrow band aslant over a plane, on which strips are more than twice as wide as beside it."""
+
+    def half_widths(self, cut: Cut, along: np.ndarray, step: np.ndarray) -> np.ndarray:
+        on = self.face.contains(self.uv(along, step))
+        return np.repeat(np.where(on, 0.011, 0.0045)[:, None], 2, axis=1)
+
+
+def _uncovered(chart: IsoChart, steps: np.ndarray, cut: Cut) -> float:
+    """The greatest distance of a place on the face from the strips of the passes, as a share of a wide strip."""
+    along, step = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 1, 2001), np.linspace(0, 1, 1501)))
+    on = chart.face.contains(chart.uv(along, step))
+    along, step = along[on], step[on]
+    beyond = np.full(len(along), np.inf)
+    for one in steps:
+        low, high = chart.half_widths(cut, along, np.full(len(along), one)).T
+        beyond = np.minimum(beyond, np.maximum(one - low - step, step - one - high))
+    return float(beyond.max() / 0.022)
+
+
+def test_strips_that_jump_between_measured_lines_leave_nothing_uncovered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: a frame of fillets, where widths were interpolated from those on a fillet to those beside it."""
+    band = np.array([[0.1, 0.0], [0.112, 0.0], [0.912, 1.0], [0.9, 1.0]])
+    chart = _Band(flat(200.0, 60.0).trimmed((band,)), "u")
+    cut = Cut(Tool.ball(6), leaning(15.0), 0.02, 0.0)
+    across = lines(chart, cut)
+    assert len(across.measured) > 193, "several lines cross each piece of a pass"
+    made = space(chart, cut, across, table(columns(chart, across.along), len(across.along)))
+    assert _uncovered(chart, made.steps, cut) < 1e-3
+    assert len(made.steps) < 110, "the narrow strips beside the band have no say in most of them"
+    monkeypatch.setattr("toolaxis.path.step_over._JUMPS", 1e9)
+    old = space(chart, cut, across, table(columns(chart, across.along), len(across.along)))
+    assert _uncovered(chart, old.steps, cut) > 0.02

@@ -6,22 +6,25 @@ strip ends on the border.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.path.greatest_step_over import limit_half_widths
-from toolaxis.path.parametrization import Chart, Cut, columns, extents
+from toolaxis.path.parametrization import Chart, Cut, columns, extents, rows
 from toolaxis.path.trim_intervals import first_from, last_of, table
 from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: Numbers of gaps between measured lines that are tried in turn.
-_GAPS = (24, 48, 96, 192)
+#: Numbers of gaps between measured lines that are tried in turn, and those that narrow faces may ask for besides.
+_GAPS, _NARROW_GAPS = (24, 48, 96, 192), (384, 768)
+#: Passes of which is taken how far they run over the face without a break, the share of that length whose pieces may be
+#: shorter than what is taken of them, and how many measured lines cross such a piece.
+_ASKED, _SHORTEST, _CROSSED = 64, 0.1, 4
 #: All lines together are about this many, or as many as lie `PITCH` apart where that makes fewer.
 _FINE = 1024
 #: In radii of the cutter: what is smaller along or across passes changes nothing of where they go.
@@ -31,6 +34,8 @@ _INTERPOLATION, _ELSEWHERE = 5e-4, 3e-3
 _NARROW = 1.1
 #: By how much half widths between two measured lines may lie beyond those on them, as a share of these.
 _BEYOND = 0.1
+#: Where those of two neighbours differ by more than this ratio, and interpolation is not exact, they jump in between.
+_JUMPS = 1.2
 #: Strips overlap by up to this share of the narrowest one, half as much on average.
 _ACCURACY = 4e-4
 _MOST_PASSES = 20_000
@@ -64,6 +69,8 @@ class Lines:
         Measured lines, and their weights, that interpolate to each line by a cubic.
     before : (m,) array
         The measured line before each line; the last but one for the last.
+    exact : bool
+        Whether half widths between measured lines were found to be as interpolation tells.
     """
 
     measured: Array
@@ -71,6 +78,7 @@ class Lines:
     before: NDArray[np.intp]
     index: NDArray[np.intp]
     weight: Array
+    exact: bool = True
 
     def spread(self, values: Array) -> Array:
         """Values (n, ...) on the measured lines, interpolated to all lines (m, ...)."""
@@ -80,11 +88,16 @@ class Lines:
         """Half widths (n, 2) on the measured lines, interpolated to all lines (m, 2).
 
         A line keeps near those of its two neighbours: beside one strip that is many times as wide as the others a cubic
-        would fall below zero, and no pass could follow.
+        would fall below zero, and no pass could follow.  Where they jump, as from a fillet to the plane beside it, it
+        is not known on which side of the jump a line lies, and it takes the narrower one.
         """
         one, other = halves[self.before], halves[self.before + 1]
-        low, high = (1 - _BEYOND) * np.minimum(one, other), (1 + _BEYOND) * np.maximum(one, other)
-        return np.clip(self.spread(halves), low, high)
+        narrower, wider = np.minimum(one, other), np.maximum(one, other)
+        found = np.clip(self.spread(halves), (1 - _BEYOND) * narrower, (1 + _BEYOND) * wider)
+        if self.exact:
+            return np.asarray(found)
+        jumps = (narrower > 0) & (wider > _JUMPS * narrower)
+        return np.where(jumps, narrower, found)
 
 
 def lines(chart: Chart, cut: Cut) -> Lines:
@@ -97,7 +110,8 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     """
     _, _, s0, s1 = chart.bounds
     count = int(np.clip(np.ceil(extents(chart)[0] / (PITCH * cut.tool.radius)), 1, _FINE))
-    fine = _grid(chart, _GAPS[-1], count)
+    tried = _gaps(chart)
+    fine = _grid(chart, tried[-1], count)
     steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
     along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
     exact = limit_half_widths(chart, cut, along, step).reshape(len(fine.measured), len(steps), 2)
@@ -105,7 +119,7 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
     width = np.where(counts, exact.sum(axis=2), np.inf)
     allowed = np.where(width <= _NARROW * width.min(axis=0), _INTERPOLATION, _ELSEWHERE)[..., None] * exact
-    for gaps in _GAPS[:-1]:
+    for gaps in tried[:-1]:
         coarse = _grid(chart, gaps, count)
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
@@ -113,7 +127,21 @@ def lines(chart: Chart, cut: Cut) -> Lines:
         guess = _interpolate(coarse.measured, exact[where], fine.measured)
         if (np.abs(guess - exact) <= allowed)[counts].all():
             return coarse
-    return fine
+    return replace(fine, exact=False)
+
+
+def _gaps(chart: Chart) -> tuple[int, ...]:
+    """Numbers of gaps to try: where passes cross narrow arms of a face, several measured lines have to cross each too.
+    """
+    a0, a1, s0, s1 = chart.bounds
+    pieces = rows(chart, s0 + (s1 - s0) * (np.arange(_ASKED) + 0.5) / _ASKED)
+    length = np.sort(pieces.high - pieces.low)
+    if not len(length):
+        return _GAPS
+    short = length[np.searchsorted(np.cumsum(length), _SHORTEST * length.sum())]
+    enough = _CROSSED * (a1 - a0) / short
+    further = int(np.searchsorted(_NARROW_GAPS, enough)) + 1 if enough > _GAPS[-1] else 0
+    return _GAPS + _NARROW_GAPS[:further]
 
 
 def _grid(chart: Chart, gaps: int, count: int) -> Lines:
