@@ -73,6 +73,7 @@ def unite(faces: Sequence[Face], gap: float = GAP) -> Face:
     box = np.concatenate([face.box for face in faces])
     origin = (box.min(axis=0) + box.max(axis=0)) / 2
     seen = [SeenFace(face, frame[:2], origin) for face in faces]
+    _check_hidden(seen, name_of(faces), gap)  # the line around them and the spline through them take long
     outline = outline_around(seen, gap)
     surface = view_surface(seen, frame, origin, outline)
     members = tuple(Member(face) for face in faces)
@@ -93,15 +94,31 @@ def _long_direction(faces: Sequence[Face], up: Array) -> Array:
     return np.asarray(unit(way - (way @ up) * up))
 
 
-def _check_covered(made: Face, seen: Sequence[SeenFace], gap: float) -> None:
-    """That no place of a face lies above another one as seen along the direction."""
+def _check_hidden(seen: Sequence[SeenFace], label: str, gap: float) -> None:
+    """That no place of a face lies below another one as seen along the direction."""
     for one in seen:
         point = one.face.evaluate(one.face.grid(_LOOKED, _LOOKED)).point
-        if not len(point):
-            continue
+        places, height = one.project(point), one.heights_of(point)
+        above = np.zeros(len(point))
+        for other in seen:
+            under = other.contains(places) if other is not one else np.zeros(len(places), dtype=bool)
+            if under.any():
+                above[under] = np.maximum(above[under], other.heights_at(places[under]) - height[under])
+        _check_off(one, label, point, above, gap)
+
+
+def _check_covered(made: Face, seen: Sequence[SeenFace], gap: float) -> None:
+    """That every place of a face is one of the skin."""
+    for one in seen:
+        point = one.face.evaluate(one.face.grid(_LOOKED, _LOOKED)).point
         off = np.linalg.norm(made.evaluate(one.project(point)).point - point, axis=1)
-        worst = int(np.argmax(off))
-        if off[worst] > _OTHER + gap:
-            raise UnsupportedGeometry(f"faces {made.label} cannot be machined as one: another of them lies "
-                                      f"{off[worst]:.2f} mm above or below face {one.face.label} at "
-                                      f"{np.round(point[worst], 2).tolist()}: choose fewer of them")
+        _check_off(one, made.label, point, off, gap)
+
+
+def _check_off(one: SeenFace, label: str, point: Array, off: Array, gap: float) -> None:
+    """Refuse faces of which another one lies off the points (n, 3) of one, by (n,) mm."""
+    worst = int(np.argmax(off)) if len(off) else 0
+    if len(off) and off[worst] > _OTHER + gap:
+        raise UnsupportedGeometry(f"faces {label} cannot be machined as one: another of them lies "
+                                  f"{off[worst]:.2f} mm above or below face {one.face.label} at "
+                                  f"{np.round(point[worst], 2).tolist()}: choose fewer of them")
