@@ -179,7 +179,7 @@ def wait_for(process: subprocess.Popen[str], text: str, limit: float = 120.0) ->
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to another process")
-@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sign", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long)])
 def test_a_stop_keeps_finished_faces_in_one_whole_plan(sheet: Path, tmp_path: Path, sign: signal.Signals) -> None:
     process = start(["plan", str(sheet), *SLOW, "--faces=1,2,3", "--workers=2", "--no-pictures",
                      "--out", str(tmp_path / "out")])

@@ -85,7 +85,7 @@ def test_signals_while_the_plan_is_written_do_not_interrupt_it(sheet: Path, tmp_
 
 
 @posix
-@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sign", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGTERM])
 def test_a_judge_that_is_stopped_keeps_what_was_judged(planned: Path, tmp_path: Path, sign: signal.Signals) -> None:
     folder = tmp_path / "out"
     shutil.copytree(planned, folder)

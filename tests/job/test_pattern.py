@@ -299,12 +299,18 @@ def test_a_gap_narrower_than_the_tool_is_infeasible_and_names_the_widest() -> No
     assert "widest cutter that passes" in made.operations[5].orientation.reasons[0]
 
 
-@pytest.mark.parametrize(("diameter", "left"), [(10, True), (6, False)])
-def test_fillets_tighter_than_the_cutter_are_left_to_a_smaller_one(diameter: float, left: bool) -> None:
+@pytest.fixture(scope="module")
+def blisk() -> Any:
+    """The pattern of the blisk among the examples."""
     pattern, _ = find_pattern(ta.load(BLISK))
     assert pattern is not None
-    found = group_blade_faces(pattern, ta.Tool.torus(diameter, 1), 0.1)
-    fillets = {face.number for face in pattern.first if pattern.blades.side_of(face.number) == "fillet"}
+    return pattern
+
+
+@pytest.mark.parametrize(("diameter", "left"), [(10, True), (6, False)])
+def test_fillets_tighter_than_the_cutter_are_left_to_a_smaller_one(blisk: Any, diameter: float, left: bool) -> None:
+    found = group_blade_faces(blisk, ta.Tool.torus(diameter, 1), 0.1)
+    fillets = {face.number for face in blisk.first if blisk.blades.side_of(face.number) == "fillet"}
     assert fillets
     assert {face.number for face in found.whole} & fillets == (set() if left else fillets)
     assert set(found.left) == (fillets if left else set())

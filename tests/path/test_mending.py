@@ -27,8 +27,8 @@ OUTLINES = {
     "round": 0.5 + 0.42 * ROUND,
     "uneven": 0.5 + (0.3 + 0.14 * np.cos(5 * T))[:, None] * ROUND,
 }
-#: Every outline with both cutters and all ways of laying passes; half of all triples takes minutes and is for --long.
-CASES = [pytest.param(outline, number, *way, marks=[pytest.mark.long] * ((i + number + k) % 2))
+#: Every outline with both cutters, and each way of laying passes twice; all triples take minutes and are for --long.
+CASES = [pytest.param(outline, number, *way, marks=[pytest.mark.long] * ((i + number + k) % 4 > 0))
          for i, outline in enumerate(OUTLINES) for number in (0, 1) for k, way in enumerate(LAID)]
 
 

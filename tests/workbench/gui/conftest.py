@@ -298,9 +298,17 @@ class Desk:
         self.pump(0.05)
         return form.pointer.text()
 
+    def told_at(self, form, looks):
+        """What is told along the way of the slider, at so many places and its end: at once, and nothing is drawn."""
+        told = []
+        for k in range(looks + 1):
+            form.slide.setValue(round(k / looks * form.slide.maximum()))
+            told.append(form.pointer.text())
+        return told
+
     def index_moves(self, form, looks=60):
         """Shares of the way of the slider at which there is an index move."""
-        return [k / looks for k in range(looks + 1) if "ndex move to" in self.played_at(form, k / looks)]
+        return [k / looks for k, text in enumerate(self.told_at(form, looks)) if "ndex move to" in text]
 
     def open(self, path):
         """Open a STEP file in a document of its own; its part."""

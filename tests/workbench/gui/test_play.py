@@ -56,12 +56,13 @@ def test_the_tool_runs_along_all_operations(desk, leaning, tmp_path):
     assert "The tool alone" in form.message.text() and not form.still.isVisible()
     assert form.met.text().startswith("No collisions found.") and form.met.text().endswith("Not checked: index moves.")
     assert not tool_of(leaning[0]).ViewObject.Visibility
-    seen = [desk.played_at(form, k / 50) for k in range(51)]
+    seen = desk.told_at(form, 50)
     labels = [next(one for one in leaning if one.Label in text).Label for text in seen if "ndex move" not in text]
     assert labels == sorted(labels, key=[one.Label for one in leaning].index) and len(set(labels)) == 2
     assert any("cutting, pass" in text for text in seen) and any("link, pass" in text for text in seen)
-    assert seen[-1].startswith(f"{leaning[1].Label}: ") and desk.index_moves(form)
-    assert "Index move to " + leaning[1].Label in desk.played_at(form, desk.index_moves(form)[0])
+    between = desk.index_moves(form)
+    assert seen[-1].startswith(f"{leaning[1].Label}: ") and between
+    assert "Index move to " + leaning[1].Label in desk.played_at(form, between[0])
     desk.shot("76-played-alone")
     begin, total = (text.split(" of ")[k] for k, text in enumerate((desk_clock(desk, form, 0.0),
                                                                    desk_clock(desk, form, 1.0))))
@@ -111,8 +112,8 @@ def test_what_the_tool_meets_is_red_and_a_click_leads_there(desk, operation, tmp
     red, first = desk.red_points(document, tmp_path), form.slide.value()
     assert red > 500
     assert desk.opened[-1]().bar.scene.reddened == ["Clamp"], "the clamp is red too, not the tool alone"
-    free = [k / 50 for k in range(51) if "Clamp" not in desk.played_at(form, k / 50)]
-    desk.played_at(form, free[0])
+    free = next(k / 50 for k, text in enumerate(desk.told_at(form, 50)) if "Clamp" not in text)
+    desk.played_at(form, free)
     assert desk.red_points(document, tmp_path) == 0
     form.met.linkActivated.emit("next")
     desk.pump(0.1)
@@ -165,9 +166,12 @@ def test_the_machine_of_the_document_moves(desk, machined):
     assert view.getCameraOrientation().isSame(seen, 1e-6)
 
 
-def test_a_body_of_the_machine_that_meets_a_clamp_is_red(desk, machined):
+def test_a_body_of_the_machine_that_meets_a_clamp_is_red(desk, operation):
     """A beam above the part is met by the spindle alone: it is far above the holder's way, and beside the tool."""
-    document = machined[0].Document
+    from freecad.toolaxis.document.machine import place_machine
+
+    document = operation.Document
+    place_machine(document, "bc-table-table", (0, 0, 20), [])
     beam = document.addObject("Part::Box", "Beam")
     beam.Length, beam.Width, beam.Height = 20, 20, 30
     beam.Placement.Base = Vector(-60, 0, 110)
@@ -196,7 +200,7 @@ def test_a_job_is_played_in_its_own_order(desk, leaning):
     make_jobs(document, list(leaning))
     job = jobs_of(leaning[1])[0]
     form = opened(desk, job)
-    texts = {desk.played_at(form, k / 20).split(":")[0] for k in range(21)}
+    texts = {text.split(":")[0] for text in desk.told_at(form, 20)}
     assert texts == {leaning[1].Label} and not desk.index_moves(form)
     closed(desk)
     form = opened(desk, job, jobs_of(leaning[0])[0])
