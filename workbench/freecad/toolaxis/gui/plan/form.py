@@ -10,12 +10,14 @@ from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.plan.rack_choice import RackChoice
+from freecad.toolaxis.gui.plan.setup_tab import SetupTab
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from freecad.toolaxis.services.background import sentence
 from PySide import QtWidgets
 
 from toolaxis.plan.choices import DIRECTIONS, ISO, PASSES
+from toolaxis.shape.work_origin import parse_margins, parse_origin
 from toolaxis.tools.registry import cutters
 
 translate = FreeCAD.Qt.translate
@@ -56,6 +58,7 @@ class PlanForm:
         self.quantities["leastLean"] = QuantityField(self._find("leastLean"), "deg", (0, 4))
         self.lines = {field: self._find(field, QtWidgets.QLineEdit) for field in _LINES}
         self.racks = RackChoice(form)
+        self.setup = SetupTab(form, self.faces)
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.kind.addItems([translate("ToolAxisPlan", one.title) for one in cutters().values()])
@@ -295,6 +298,7 @@ class PlanForm:
         for field, name in _LINES.items():
             self.lines[field].setText(getattr(inputs, name))
         self.racks.choose(inputs.rack, inputs.most_tools)
+        self.setup.fill(inputs)
         self.given = self.tool_text, inputs.tool_number, inputs.tool_title
         self.set_limits(inputs.limits)
 
@@ -318,6 +322,7 @@ class PlanForm:
                 "flute_length": self.quantities["fluteLength"].value,
                 **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
+                "origin": self.setup.origin, "stock_box": self.setup.stock_box,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
                 "passes": PASSES[self._find("passes", QtWidgets.QComboBox).currentIndex()]
@@ -342,7 +347,7 @@ class PlanForm:
             return sentence(reason)
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
-        return ""
+        return self.setup.refusal
 
 
 def _inputs_to_show(inputs, fastest):
@@ -353,7 +358,8 @@ def _inputs_to_show(inputs, fastest):
 
     checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: check_count(inputs.regions),
               "orientations": lambda: check_count(inputs.orientations, "orientations"),
-              "spindle": lambda: _check_spindle(inputs.spindle, fastest)}
+              "spindle": lambda: _check_spindle(inputs.spindle, fastest),
+              "origin": lambda: parse_origin(inputs.origin), "stock_box": lambda: parse_margins(inputs.stock_box)}
     reasons = {}
     for name, look in checks.items():
         try:
