@@ -1,5 +1,6 @@
 """The origin and the stock of a plan: in its frames, on disk, in programs and on their setup sheet."""
 
+import json
 import re
 from functools import cache
 from pathlib import Path
@@ -47,6 +48,11 @@ def test_it_comes_back_from_disk_and_old_files_have_none(tmp_path: Path) -> None
     back = read_plan(tmp_path)
     assert back.inputs.origin == "stock:top-front-left" and back.inputs.stock_margins == MARGINS
     assert np.allclose(back.datum, plan.datum) and back.blank == plan.blank
+    document = json.loads((tmp_path / "plan.json").read_text())
+    del document["inputs"]["origin"], document["inputs"]["stock_box"]
+    (tmp_path / "plan.json").write_text(json.dumps(document))
+    older = read_plan(tmp_path)
+    assert older.inputs.origin == "" and older.blank is None and np.allclose(older.datum, plan.datum)
 
 
 def test_another_origin_moves_programs_and_nothing_else() -> None:

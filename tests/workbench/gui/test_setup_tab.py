@@ -70,6 +70,32 @@ def test_a_corner_of_the_stock_from_the_panel_into_the_document(desk, wavy, form
     assert desk.operation_in(part.Document).StockBox == "2,1,1,1,1,3"
 
 
+def test_the_triad_of_the_preview_stands_where_that_of_the_document_will(desk, wavy, form):
+    """The first point of the arrow along X, and its end in that direction."""
+    from FreeCAD import Vector
+    from freecad.toolaxis.document.children import frame_of
+    from pivy import coin
+
+    part, _ = wavy
+    setup_page(desk, form)
+    choose(desk, form.origin, 2)
+    desk.computed(form)
+    preview = desk.opened[-1]().preview
+    desk.wait(lambda: not preview._left, "all of the preview is drawn")
+    action = coin.SoSearchAction()
+    action.setType(coin.SoAnnotation.getClassTypeId())
+    action.apply(preview.root)
+    triad = action.getPath().getTail()
+    action.setType(coin.SoCoordinate3.getClassTypeId())
+    action.apply(triad)
+    begin, end = (np.array(point.getValue()) for point in action.getPath().getTail().point.getValues())
+    closed(desk)
+    placement = frame_of(desk.operation_in(part.Document)).Placement
+    assert np.allclose(begin, tuple(placement.Base), atol=1e-3)
+    along = placement.Rotation.multVec(Vector(1, 0, 0))
+    assert np.allclose((end - begin) / np.linalg.norm(end - begin), tuple(along), atol=1e-3)
+
+
 def test_another_origin_needs_no_other_computation(desk, wavy, form):
     part, _ = wavy
     desk.computed(form)

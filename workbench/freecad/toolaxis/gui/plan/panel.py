@@ -421,6 +421,7 @@ class PlanPanel(Panel):
         things |= {body.Name: body for body in self.fields.avoid.ticked}
         if any(one.Name == name for thing in things.values() for one in (thing, *chain_of(thing))):
             self.outrun = True
+            self.setup_preview.show()
             if self.work is None:
                 self._changed()
 

@@ -68,7 +68,9 @@ class SetupPreview:
             where = locate_origin(origin, box, margins) if origin else np.array(shapes[0].Placement.Base)
         except ToolAxisError:
             return []
-        found = [triad(where, np.eye(3), _SHARE * float(np.linalg.norm(box[1] - box[0])))]
+        found = []
+        if self.form.tabs.currentWidget() is not self.form.resultTab:  # there the plan's own triad has the same origin
+            found.append(triad(where, np.eye(3), _SHARE * float(np.linalg.norm(box[1] - box[0]))))
         if margins:
             stock = StockBox.around(box, margins)
             ends = np.array([stock.low, stock.high])
