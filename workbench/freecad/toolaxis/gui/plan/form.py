@@ -1,7 +1,6 @@
 """The fields of the planning panel: what they hold, and in one sentence why that is not possible."""
 
 from contextlib import suppress
-from dataclasses import replace
 from math import degrees
 
 import FreeCAD
@@ -11,13 +10,13 @@ from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roug
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.plan.rack_choice import RackChoice
 from freecad.toolaxis.gui.plan.setup_tab import SetupTab
+from freecad.toolaxis.gui.plan.shown_inputs import inputs_to_show
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from freecad.toolaxis.services.background import sentence
 from PySide import QtWidgets
 
 from toolaxis.plan.choices import DIRECTIONS, ISO, PASSES
-from toolaxis.shape.work_origin import parse_margins, parse_origin
 from toolaxis.tools.registry import cutters
 
 translate = FreeCAD.Qt.translate
@@ -274,7 +273,7 @@ class PlanForm:
         ----------
         inputs : freecad.toolaxis.document.inputs.JobInputs
         """
-        self.unshown, inputs = _inputs_to_show(inputs, self.spindle.maximum())
+        self.unshown, inputs = inputs_to_show(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
@@ -348,33 +347,6 @@ class PlanForm:
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
         return self.setup.refusal
-
-
-def _inputs_to_show(inputs, fastest):
-    """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
-    from toolaxis.errors import InvalidInput
-    from toolaxis.partition.partition import check_count
-    from toolaxis.tools.tool import Tool
-
-    checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: check_count(inputs.regions),
-              "orientations": lambda: check_count(inputs.orientations, "orientations"),
-              "spindle": lambda: _check_spindle(inputs.spindle, fastest),
-              "origin": lambda: parse_origin(inputs.origin), "stock_box": lambda: parse_margins(inputs.stock_box)}
-    reasons = {}
-    for name, look in checks.items():
-        try:
-            look()
-        except InvalidInput as reason:
-            reasons[name] = sentence(reason)
-    usual = JobInputs()
-    return "; ".join(reasons.values()), replace(inputs, **{name: getattr(usual, name) for name in reasons})
-
-
-def _check_spindle(speed, fastest):
-    from toolaxis.errors import InvalidInput
-
-    if not 0 < speed <= fastest:
-        raise InvalidInput(f"spindle is {speed:g} rev/min: it must be above zero, and at most {fastest} rev/min")
 
 
 def check(values):
