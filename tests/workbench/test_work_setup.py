@@ -135,6 +135,18 @@ def test_faces_of_several_parts_have_no_common_stock(document, parts):
         parts.inputs_for((first, name), (second, name), stock_box="2").check_tools()
 
 
+@pytest.mark.parametrize(("given", "words"), [({"origin": "part:top"}, "origins"), ({"stock_box": "2"}, "stocks")])
+def test_the_same_place_of_another_part_is_another_origin(given, words, document, parts):
+    first, second = parts.block(document, "First"), parts.block(document, "Second")
+    second.Placement.Base = Vector(0, 60, 0)
+    document.recompute()
+    made = [planned(document, parts, thing, **given)[0] for thing in (first, second)]
+    with pytest.raises(InvalidInput, match=f"have different {words}"):
+        make_jobs(document, made)
+    with pytest.raises(InvalidInput, match="origin and stock are chosen for one part"):
+        export(made, "unused")
+
+
 def test_turned_copies_count_from_the_same_origin(document, parts):
     thing = parts.block(document)
     name = parts.sculptured_name(thing)

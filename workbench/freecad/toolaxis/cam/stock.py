@@ -3,6 +3,9 @@
 import FreeCAD
 from freecad.toolaxis.document.placement import matrix_of
 
+#: Distance up to which origins and corners of the stock are the same, mm.
+_CLOSE = 1e-6
+
 
 def place_stock(job, group, frame):
     """Put the stock of the operations into a job, a box along the document's axes whatever the job's own.
@@ -50,10 +53,23 @@ def check_one_setup(group):
 
     first = group[0]
     for one in group:
-        for name, words in (("origin", "origins"), ("stock_box", "stocks")):
-            if getattr(one.inputs, name) != getattr(first.inputs, name):
-                raise InvalidInput(f"'{first.operation.Label}' and '{one.operation.Label}' have different {words}: "
-                                   "select those that go together, and make the jobs of each kind by themselves")
+        words = _difference(first, one)
+        if words:
+            raise InvalidInput(f"'{first.operation.Label}' and '{one.operation.Label}' have different {words}: "
+                               "select those that go together, and make the jobs of each kind by themselves")
+
+
+def _difference(first, one):
+    """What of two operations does not go into one job; empty where they have the part's own origin and no stock."""
+    if one.inputs.origin != first.inputs.origin:
+        return "origins"
+    away = FreeCAD.Vector(*(one.matrix[:3, 3] - first.matrix[:3, 3]).tolist()).Length
+    if one.inputs.origin and away > _CLOSE:  # the same place of another part
+        return "origins"
+    boxes = [list(passes.operation.StockCorners) for passes in (first, one)]
+    apart = [low.distanceToPoint(high) for low, high in zip(*boxes, strict=False)]
+    same = one.inputs.stock_box == first.inputs.stock_box and len(boxes[0]) == len(boxes[1])
+    return "" if same and max(apart, default=0.0) <= _CLOSE else "stocks"
 
 
 def origin_comments(one, frame):

@@ -274,6 +274,18 @@ class JobInputs:
         if len(self.things) > 1 and (job.avoid or job.allowance_on):
             raise InvalidInput("faces to avoid and allowances on faces are numbered in one part and several are "
                                "chosen: choose faces of one part")
+        self.check_one_part()
+
+    def check_one_part(self):
+        """Check that an origin and a stock of their own are for one part.
+
+        Raises
+        ------
+        InvalidInput
+            When faces of several are chosen.
+        """
+        from toolaxis.errors import InvalidInput
+
         if len(self.things) > 1 and (self.origin or self.stock_box):
             raise InvalidInput("origin and stock are chosen for one part and faces of several are chosen: choose faces "
                                "of one part, or the part's own origin and no stock")

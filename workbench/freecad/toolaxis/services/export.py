@@ -265,7 +265,9 @@ def _together(operations, inputs):
     things = {thing.Name for one in inputs for thing in one.things}
     obstacles = {body.Name: body for one in inputs for body in one.obstacles if body.Name not in things}
     faces = dict.fromkeys(face for one in inputs for face in one.faces)
-    return replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+    together = replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+    together.check_one_part()
+    return together
 
 
 def _offsets(together):
