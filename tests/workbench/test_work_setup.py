@@ -117,7 +117,7 @@ def test_a_part_that_left_its_stock_makes_it_stale(given, document, parts):
         make_jobs(document, operation)
 
 
-def test_one_job_has_one_origin(document, parts):
+def test_one_job_has_one_origin(document, parts, tmp_path):
     thing = parts.block(document)
     first, _ = planned(document, parts, thing, origin="part:top")
     second, _ = planned(document, parts, thing, origin="part:bottom")
@@ -125,7 +125,7 @@ def test_one_job_has_one_origin(document, parts):
         make_jobs(document, [first, second])
     assert not [one for one in document.Objects if hasattr(one, "Fixtures")]
     with pytest.raises(InvalidInput, match="have different origins"):
-        export([first, second], "unused")
+        export([first, second], tmp_path)
 
 
 def test_faces_of_several_parts_have_no_common_stock(document, parts):
@@ -136,7 +136,7 @@ def test_faces_of_several_parts_have_no_common_stock(document, parts):
 
 
 @pytest.mark.parametrize(("given", "words"), [({"origin": "part:top"}, "origins"), ({"stock_box": "2"}, "stocks")])
-def test_the_same_place_of_another_part_is_another_origin(given, words, document, parts):
+def test_the_same_place_of_another_part_is_another_origin(given, words, document, parts, tmp_path):
     first, second = parts.block(document, "First"), parts.block(document, "Second")
     second.Placement.Base = Vector(0, 60, 0)
     document.recompute()
@@ -144,7 +144,7 @@ def test_the_same_place_of_another_part_is_another_origin(given, words, document
     with pytest.raises(InvalidInput, match=f"have different {words}"):
         make_jobs(document, made)
     with pytest.raises(InvalidInput, match="origin and stock are chosen for one part"):
-        export(made, "unused")
+        export(made, tmp_path)
 
 
 def test_turned_copies_count_from_the_same_origin(document, parts):
