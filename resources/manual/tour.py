@@ -1,7 +1,8 @@
 """Make the pictures of the tour through FreeCAD (freecad.md) from the real window.
 
-FreeCAD's Python runs it, on a display: `python resources/manual/tour.py` writes the pictures beside the manual's other
-figures, and the program that FreeCAD's post-processor made to the screen.  ImageMagick takes and scales the pictures.
+FreeCAD's Python runs it, on a display of 1400x900 and with TOOLAXIS_SHOTS set, for a window as large: `python
+resources/manual/tour.py` writes the pictures beside the manual's other figures, and the program that FreeCAD's
+post-processor made to the screen.  ImageMagick takes and scales the pictures.
 """
 
 import importlib.util
@@ -99,6 +100,13 @@ class Tour:
         self.fitted()
         self.top(form)
         self.picture("2-job")
+        form.tabs.setCurrentWidget(form.setupTab)
+        form.origin.setCurrentIndex(1)
+        form.originPlace.setCurrentIndex(1)
+        self.fitted()
+        self.top(form)
+        self.picture("2-setup")
+        form.origin.setCurrentIndex(0)
         form.tabs.setCurrentWidget(form.toolTab)
         self.top(form)
         self.picture("3-tool")

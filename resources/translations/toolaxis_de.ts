@@ -295,6 +295,10 @@
    <translation>Keine Karte: Diese Achse wurde nicht für sich gesucht. Teilflächen haben sie gemeinsam, sie ist vorgegeben oder folgt aus dem Verfahren.</translation>
   </message>
   <message>
+   <source>No vertex is selected: select a vertex of the part in the 3D view</source>
+   <translation>Kein Punkt ist ausgewählt: in der 3D-Ansicht einen Punkt des Teils auswählen</translation>
+  </message>
+  <message>
    <source>Not checked: {}.</source>
    <translation>Nicht geprüft: {}.</translation>
   </message>
@@ -423,6 +427,10 @@
    <translation>Grenze der Rillenhöhe</translation>
   </message>
   <message>
+   <source>Select a vertex of the part in the 3D view and press Use selected on the tab Setup</source>
+   <translation>In der 3D-Ansicht einen Punkt des Teils auswählen und auf der Seite Aufspannung „Auswahl nehmen“ drücken</translation>
+  </message>
+  <message>
    <source>Select one or more faces in the 3D view and press Add selected</source>
    <translation>Bitte eine oder mehrere Flächen in der 3D-Ansicht auswählen und Auswahl hinzufügen drücken</translation>
   </message>
@@ -453,6 +461,10 @@
   <message>
    <source>Stick-out {}</source>
    <translation>Auskraglänge {}</translation>
+  </message>
+  <message>
+   <source>Stock: {}</source>
+   <translation>Rohteil: {}</translation>
   </message>
   <message>
    <source>Stopped</source>
@@ -561,6 +573,10 @@
   <message>
    <source>The verdict could not be kept: {}</source>
    <translation>Das Urteil konnte nicht aufbewahrt werden: {}</translation>
+  </message>
+  <message>
+   <source>The vertex is not of the part that is machined: select one of {}</source>
+   <translation>Der Punkt gehört nicht zum bearbeiteten Teil: einen von {} auswählen</translation>
   </message>
   <message>
    <source>There is no map.</source>
@@ -1267,6 +1283,30 @@
    <translation> µm</translation>
   </message>
   <message>
+   <source>+X</source>
+   <translation>+X</translation>
+  </message>
+  <message>
+   <source>+Y</source>
+   <translation>+Y</translation>
+  </message>
+  <message>
+   <source>+Z</source>
+   <translation>+Z</translation>
+  </message>
+  <message>
+   <source>-X</source>
+   <translation>-X</translation>
+  </message>
+  <message>
+   <source>-Y</source>
+   <translation>-Y</translation>
+  </message>
+  <message>
+   <source>-Z</source>
+   <translation>-Z</translation>
+  </message>
+  <message>
    <source>4+1 axes</source>
    <translation>4+1 Achsen</translation>
   </message>
@@ -1471,6 +1511,30 @@
    <translation>Halter, Höhen ab seiner Unterseite</translation>
   </message>
   <message>
+   <source>How far the stock reaches beyond the part on the side +X.</source>
+   <translation>Wie weit das Rohteil auf der Seite +X über das Teil hinausreicht.</translation>
+  </message>
+  <message>
+   <source>How far the stock reaches beyond the part on the side +Y.</source>
+   <translation>Wie weit das Rohteil auf der Seite +Y über das Teil hinausreicht.</translation>
+  </message>
+  <message>
+   <source>How far the stock reaches beyond the part on the side +Z.</source>
+   <translation>Wie weit das Rohteil auf der Seite +Z über das Teil hinausreicht.</translation>
+  </message>
+  <message>
+   <source>How far the stock reaches beyond the part on the side -X.</source>
+   <translation>Wie weit das Rohteil auf der Seite -X über das Teil hinausreicht.</translation>
+  </message>
+  <message>
+   <source>How far the stock reaches beyond the part on the side -Y.</source>
+   <translation>Wie weit das Rohteil auf der Seite -Y über das Teil hinausreicht.</translation>
+  </message>
+  <message>
+   <source>How far the stock reaches beyond the part on the side -Z.</source>
+   <translation>Wie weit das Rohteil auf der Seite -Z über das Teil hinausreicht.</translation>
+  </message>
+  <message>
    <source>How many different axes there are in all; automatic: every number is tried, and a curve shows what each comes to.</source>
    <translation>Wie viele verschiedene Achsen es insgesamt gibt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
   </message>
@@ -1539,6 +1603,10 @@
    <translation>Bearbeitungstoleranz: wie weit die fertige Fläche zu tief geschnitten werden darf.</translation>
   </message>
   <message>
+   <source>Margins of the stock</source>
+   <translation>Aufmaß des Rohteils</translation>
+  </message>
+  <message>
    <source>Method</source>
    <translation>Verfahren</translation>
   </message>
@@ -1581,6 +1649,10 @@
   <message>
    <source>One tool, or a rack to choose from: large tools begin, smaller ones finish what they leave.</source>
    <translation>Ein Werkzeug, oder ein Magazin zur Auswahl: Große beginnen, kleinere bearbeiten, was sie übrig lassen.</translation>
+  </message>
+  <message>
+   <source>Origin</source>
+   <translation>Nullpunkt</translation>
   </message>
   <message>
    <source>Other feed</source>
@@ -1627,6 +1699,10 @@
    <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
   </message>
   <message>
+   <source>Point</source>
+   <translation>Punkt</translation>
+  </message>
+  <message>
    <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
    <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
   </message>
@@ -1637,6 +1713,10 @@
   <message>
    <source>Rates</source>
    <translation>Vorschub und Drehzahl</translation>
+  </message>
+  <message>
+   <source>Raw stock</source>
+   <translation>Rohteil</translation>
   </message>
   <message>
    <source>Remove</source>
@@ -1677,6 +1757,10 @@
   <message>
    <source>Scallop height</source>
    <translation>Rillenhöhe</translation>
+  </message>
+  <message>
+   <source>Setup</source>
+   <translation>Aufspannung</translation>
   </message>
   <message>
    <source>Shank, heights from the tip</source>
@@ -1731,6 +1815,10 @@
    <translation>Teilflächen</translation>
   </message>
   <message>
+   <source>Takes the vertex that is selected in the 3D view as the origin. It moves along with the part.</source>
+   <translation>Nimmt den in der 3D-Ansicht ausgewählten Punkt als Nullpunkt. Er bewegt sich mit dem Teil.</translation>
+  </message>
+  <message>
    <source>Takes this and computes again. It may help with the faces that have no axis.</source>
    <translation>Übernimmt das und berechnet neu. Es kann bei den Flächen ohne Achse helfen.</translation>
   </message>
@@ -1749,6 +1837,10 @@
   <message>
    <source>The machine whose rotary axes must reach the tool axis, or limits of your own: a cone, or ranges of two angles.</source>
    <translation>Die Maschine, deren Drehachsen die Werkzeugachse erreichen müssen, oder eigene Grenzen: ein Kegel oder Bereiche zweier Winkel.</translation>
+  </message>
+  <message>
+   <source>The point of the box. The box lies along X, Y and Z of the document: left is -X, front is -Y.</source>
+   <translation>Der Punkt des Quaders. Der Quader liegt längs X, Y und Z des Dokuments: links ist -X, vorn ist -Y.</translation>
   </message>
   <message>
    <source>The rest of the part is always kept clear of; ticked bodies too.</source>
@@ -1811,8 +1903,16 @@
    <translation>Höchstens</translation>
   </message>
   <message>
+   <source>Use selected</source>
+   <translation>Auswahl nehmen</translation>
+  </message>
+  <message>
    <source>Use this axis</source>
    <translation>Diese Achse verwenden</translation>
+  </message>
+  <message>
+   <source>Vertex</source>
+   <translation>Punkt</translation>
   </message>
   <message>
    <source>What other methods need for the same faces.</source>
@@ -1827,6 +1927,10 @@
    <translation>Was die Achse ergibt, und daneben, was die versuchte ergibt.</translation>
   </message>
   <message>
+   <source>What the part is cut from: it goes into CAM jobs and onto the setup sheet.</source>
+   <translation>Woraus das Teil gefräst wird: steht in den CAM-Jobs und auf dem Einrichteblatt.</translation>
+  </message>
+  <message>
    <source>What the tool axis is chosen by.</source>
    <translation>Wonach die Werkzeugachse gewählt wird.</translation>
   </message>
@@ -1837,6 +1941,10 @@
   <message>
    <source>Where the corner arc ends; of a tapered cutter, at its tip.</source>
    <translation>Wo der Eckenbogen endet; bei einem kegeligen Fräser an der Spitze.</translation>
+  </message>
+  <message>
+   <source>Where the work coordinate systems, jobs and programs have X, Y and Z zero.</source>
+   <translation>Wo Werkstückkoordinatensysteme, Jobs und Programme X, Y und Z null haben.</translation>
   </message>
   <message>
    <source>Whether the tool axis stands still while it cuts, or how it moves.</source>
@@ -1863,6 +1971,10 @@
    <translation>beliebig, Neigung und Drehung begrenzt</translation>
   </message>
   <message>
+   <source>as the CAM job makes it</source>
+   <translation>wie der CAM-Job es anlegt</translation>
+  </message>
+  <message>
    <source>at most</source>
    <translation>höchstens</translation>
   </message>
@@ -1885,6 +1997,30 @@
   <message>
    <source>blade, least acceleration</source>
    <translation>Schaufel, kleinste Beschleunigung</translation>
+  </message>
+  <message>
+   <source>bottom, back left</source>
+   <translation>unten, hinten links</translation>
+  </message>
+  <message>
+   <source>bottom, back right</source>
+   <translation>unten, hinten rechts</translation>
+  </message>
+  <message>
+   <source>bottom, front left</source>
+   <translation>unten, vorn links</translation>
+  </message>
+  <message>
+   <source>bottom, front right</source>
+   <translation>unten, vorn rechts</translation>
+  </message>
+  <message>
+   <source>bottom, middle</source>
+   <translation>unten, Mitte</translation>
+  </message>
+  <message>
+   <source>box with margins</source>
+   <translation>Quader mit Aufmaß</translation>
   </message>
   <message>
    <source>climb</source>
@@ -1923,6 +2059,10 @@
    <translation>mittlere Normalen</translation>
   </message>
   <message>
+   <source>middle</source>
+   <translation>Mitte</translation>
+  </message>
+  <message>
    <source>number</source>
    <translation>Anzahl</translation>
   </message>
@@ -1939,12 +2079,48 @@
    <translation>je eine</translation>
   </message>
   <message>
+   <source>part's own origin</source>
+   <translation>Ursprung des Teils</translation>
+  </message>
+  <message>
+   <source>picked vertex</source>
+   <translation>gewählter Punkt</translation>
+  </message>
+  <message>
+   <source>point of the part</source>
+   <translation>Punkt des Teils</translation>
+  </message>
+  <message>
+   <source>point of the stock</source>
+   <translation>Punkt des Rohteils</translation>
+  </message>
+  <message>
    <source>sectors</source>
    <translation>Sektoren</translation>
   </message>
   <message>
    <source>strip width and roughness</source>
    <translation>Streifenbreite und Rauheit</translation>
+  </message>
+  <message>
+   <source>top, back left</source>
+   <translation>oben, hinten links</translation>
+  </message>
+  <message>
+   <source>top, back right</source>
+   <translation>oben, hinten rechts</translation>
+  </message>
+  <message>
+   <source>top, front left</source>
+   <translation>oben, vorn links</translation>
+  </message>
+  <message>
+   <source>top, front right</source>
+   <translation>oben, vorn rechts</translation>
+  </message>
+  <message>
+   <source>top, middle</source>
+   <translation>oben, Mitte</translation>
   </message>
   <message>
    <source>two-point contact</source>

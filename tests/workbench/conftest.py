@@ -52,6 +52,8 @@ OLDER = {"test_bad_cases.py": ("test_what_has_no_sculptured_face", "test_edges_s
                                   "test_a_face_without_an_axis_has_its_reasons_and_no_objects",
                                   "test_a_whole_plan_from_one_call"),
          "test_part_contract.py": (), "test_saved_before.py": (),
+         "test_work_setup.py": ("test_job_stock_and_program_count_from_a_corner_of_the_stock",
+                                "test_a_picked_vertex_moves_along_with_the_part"),
          "test_panel.py": ("test_the_workbench_is_there_with_its_commands",
                            "test_plan_from_selection_to_objects_and_back", "test_pointer_and_click_on_the_map",
                            "test_impossible_values_lock_compute_with_the_reason",
@@ -60,12 +62,14 @@ OLDER = {"test_bad_cases.py": ("test_what_has_no_sculptured_face", "test_edges_s
 # Files that run in one FreeCAD, one after another: to start it and to load the library takes longer than many of their
 # tests.  Where it crashes each of them is run by itself.  Of files that drive the window only short ones: the more
 # panels one FreeCAD has opened and closed, the sooner Qt ends in a widget that is gone.
-TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_saved_before.py"),
+TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_saved_before.py",
+             "test_work_setup.py"),
             ("test_arguments.py", "test_children.py", "test_choices.py", "test_document_parts.py", "test_export.py",
              "test_loose_faces.py", "test_machines.py", "test_objects_change.py", "test_path_collisions.py",
              "test_playing.py", "test_renumbering.py", "test_tessellation_offset.py", "test_time_left.py",
              "test_translations.py"),
-            ("test_background.py", "test_fields.py", "test_play.py", "test_settings.py", "test_views.py"),
+            ("test_background.py", "test_fields.py", "test_play.py", "test_settings.py", "test_setup_tab.py",
+             "test_views.py"),
             ("test_many_jobs.py", "test_moving.py", "test_small_window.py", "test_verify_panel.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")

@@ -25,6 +25,7 @@ from toolaxis.partition.partition import check_count
 from toolaxis.plan.document import tool_document
 from toolaxis.plan.part_document import part_document
 from toolaxis.plan.plan import PlanInputs
+from toolaxis.shape.work_origin import format_margins, parse_margins
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import INDEXED, Asked
 from toolaxis.tolerances import Tolerance
@@ -33,7 +34,8 @@ from toolaxis.tools.tool import Tool
 _INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_over": float,
            "method": str, "objective": str, "direction": str,
            "limits": str, "feedrate": float, "spindle": float, "rapid": float, "tolerance": "tolerance", "limit": float,
-           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances", "lead": float}
+           "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances", "lead": float,
+           "origin": str, "stock_box": "margins"}
 #: What is written among the tolerances of a plan.
 _OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
@@ -302,6 +304,8 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return numbers_to_avoid(value)
     if kind == "allowances":
         return parse_allowances(value)
+    if kind == "margins":
+        return format_margins(parse_margins(value))
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

@@ -131,6 +131,13 @@ def _add_division_options(sub: _Parser) -> None:
     sub.add_argument("--offset", metavar="X,Y,Z",
                      help="the part's origin in machine coordinates, all axes at zero, mm (write --offset=-100,0,50 "
                           "for a negative one): no motion leaves the travel of the linear axes")
+    sub.add_argument("--origin", default="", metavar="PLACE",
+                     help="origin of the work coordinate systems: part:top, stock:top-front-left, the same with "
+                          "middle, bottom, right and back (left is -x, front is -y), or point:X,Y,Z (default: the "
+                          "origin of the part's own frame)")
+    sub.add_argument("--stock-box", default="", metavar="MM",
+                     help="margins of the box that the part is cut from: one for all sides, or six for -x,+x,-y,+y,-z,"
+                          "+z; the setup sheet tells it")
     sub.add_argument("--least-lean", type=float, default=0.0, metavar="DEG",
                      help="least angle between the axis of a ball end, tapered ones too, and the normal at every "
                           "contact: at the tip of a ball the cutting speed is zero (default: 0, none is asked for; "

@@ -22,6 +22,7 @@ from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.progress import Progress
 from toolaxis.shape.half_space import HELD_SIDE
+from toolaxis.shape.work_origin import format_margins, parse_margins
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
@@ -67,6 +68,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
                         allowance_on=spec.inputs.allowance_on, lead=spec.inputs.lead,
+                        origin=spec.inputs.origin, stock_box=spec.inputs.stock_box,
                         progress=progress)
             if made.outcome == "cancelled" and not made.operations:
                 say("toolaxis: no face was finished: nothing is written")
@@ -89,7 +91,8 @@ def _spec(given: Namespace) -> Spec:
                         given.limits, feedrate, spindle, _tolerance(given), given.rapid, limit=given.limit,
                         passes=given.passes, avoid=parse_avoided(given.avoid), held=given.held, stock=given.stock,
                         greatest_step_over=given.greatest_step_over,
-                        allowance_on=parse_allowances(given.allowance_on), lead=given.lead)
+                        allowance_on=parse_allowances(given.allowance_on), lead=given.lead, origin=given.origin,
+                        stock_box=format_margins(parse_margins(given.stock_box)))
     if given.faces and given.skins:
         raise InvalidInput(f"--faces {given.faces} and --skins {given.skins} are both given: choose faces or skins")
     faces = f"skins {given.skins}" if given.skins else given.faces or ""

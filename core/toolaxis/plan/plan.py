@@ -24,6 +24,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace, parse_half_space
 from toolaxis.shape.part import Part
 from toolaxis.shape.stock import MOST_STOCK
+from toolaxis.shape.work_origin import StockBox, check_origin, parse_margins
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 from toolaxis.work import LIMIT
@@ -94,6 +95,10 @@ class PlanInputs:
     lead : float
         Radius of the arcs on which the tool comes down to passes and leaves them, wherever these are proven free, mm; 0
         for straight ramps.
+    origin : str
+        Where work coordinate systems have their origin, in the short form of the command; empty for the datum as given.
+    stock_box : str
+        Margins of the box that the part is cut from, in the short form of the command; empty where it is not known.
 
     Raises
     ------
@@ -120,6 +125,8 @@ class PlanInputs:
     greatest_step_over: float = 0.0
     allowance_on: tuple[tuple[int, float], ...] = ()
     lead: float = 0.0
+    origin: str = ""
+    stock_box: str = ""
 
     def __post_init__(self) -> None:
         for name, unit in (("scallop", "mm"), ("feedrate", "mm/min"), ("spindle", "rev/min"),
@@ -143,6 +150,7 @@ class PlanInputs:
             raise InvalidInput(f"tolerance is {self.tolerance!r}: give a toolaxis.Tolerance, such as "
                                "Tolerance(gouge=0.005)")
         _ = self.half_space_held
+        check_origin(self.origin, self.stock_margins)
         _check_choice("objective", self.objective, OBJECTIVES)
         _check_choice("direction", self.direction, DIRECTIONS)
         _check_choice("passes", self.passes, PASSES)
@@ -194,6 +202,17 @@ class PlanInputs:
             When its short form is not understood.
         """
         return parse_half_space(self.held) if self.held else None
+
+    @property
+    def stock_margins(self) -> tuple[float, ...]:
+        """Margins of the stock on -x, +x, -y, +y, -z and +z, mm; none where it is not known.
+
+        Raises
+        ------
+        InvalidInput
+            When their short form is not understood.
+        """
+        return parse_margins(self.stock_box)
 
     @property
     def step_over(self) -> float:
@@ -397,6 +416,12 @@ class Plan:
         number : int
         """
         return self.part if self.blades is None else self.blades.apart(self.part, number)
+
+    @property
+    def blank(self) -> StockBox | None:
+        """The box that the part is cut from; None where it is not known."""
+        margins = self.inputs.stock_margins
+        return StockBox.around((self.part.original or self.part).box, margins) if margins else None
 
     def __repr__(self) -> str:
         """One line: all paths written out are thousands."""

@@ -21,6 +21,7 @@ from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.post.context import Options, Program, ProgramContext
 from toolaxis.post.indexed_positions import IndexedPosition, axes_on_turned_table, in_plane, stations
 from toolaxis.post.plane_angles import matrix_from_turns, turns_from_matrix
+from toolaxis.shape.work_origin import describe_origin
 
 Array = NDArray[np.float64]
 Lines = list[str]
@@ -331,16 +332,29 @@ def program_text(program: Program, dialect: Dialect) -> str:
         ASCII, a line for each block.
     """
     lines, tool = list[str](), None
+    where = origin_comments(program, dialect)
     for station in program.stations:
         own = program.with_tool(station.operation.tool)
         if station.operation.tool != tool:
-            lines += dialect.start(own) if tool is None else dialect.change_tool(own)
+            lines += [*dialect.start(own), *where] if tool is None else dialect.change_tool(own)
             tool = station.operation.tool
         lines += [dialect.comment(station.operation.name.upper())]
         lines += dialect.orient(own, station)
         lines += [*dialect.approach(own, station), *_path(own, station, dialect)]
         lines += dialect.leave(own, station)
     return "\n".join([*dialect.framed([*lines, *dialect.end(program)]), ""])
+
+
+def origin_comments(program: ProgramContext, dialect: Dialect) -> Lines:
+    """The block that says where the work coordinate system has its origin; none where the plan only gives a datum.
+
+    Parameters
+    ----------
+    program : ProgramContext
+    dialect : Dialect
+    """
+    words = describe_origin(program.inputs.origin)
+    return [dialect.comment(f"ORIGIN: {words}".upper())] if words else []
 
 
 def _path(program: Program, station: IndexedPosition, dialect: Dialect) -> Iterator[str]:

@@ -14,6 +14,7 @@ from toolaxis.post.indexed_positions import IndexedPosition
 from toolaxis.post.program import Dialect, number
 from toolaxis.post.tcp_program import TcpPath, TipControl, courses
 from toolaxis.shape.stock import format_faces
+from toolaxis.shape.work_origin import describe_origin
 
 Array = NDArray[np.float64]
 
@@ -175,7 +176,8 @@ def _vector(values: Array, digits: int) -> str:
 def _work(program: Program, dialect: Dialect) -> str:
     where = program.mounting.table_from_part
     turn = placement(where)[:3, :3]
-    lines = [f"Origin: the datum of the plan, at {_vector(program.plan.datum, 4)} in the part's frame.",
+    what = describe_origin(program.inputs.origin) or "the datum of the plan"
+    lines = [f"Origin: {what}, at {_vector(program.plan.datum, 4)} in the part's frame.", *_blank_lines(program.plan),
              f"X, Y, Z along the machine's axes with all rotary axes at zero: {_vector(turn[0], 6)}; "
              f"{_vector(turn[1], 6)}; {_vector(turn[2], 6)} in the part's frame."]
     if where is None:
@@ -184,6 +186,17 @@ def _work(program: Program, dialect: Dialect) -> str:
         datum = (placement(where) @ np.append(program.plan.datum, 1.0))[:3]
         lines.append(f"The datum lies at {_vector(datum, 4)} in machine coordinates.")
     return "\n\n".join(lines)
+
+
+def _blank_lines(plan: Plan) -> list[str]:
+    """The box that the part is cut from, in the part's frame and from the origin."""
+    blank = plan.blank
+    if blank is None:
+        return []
+    ranges = [f"{axis} {number(low, 4)} to {number(high, 4)}" for axis, low, high in
+              zip("XYZ", blank.low - plan.datum, blank.high - plan.datum, strict=True)]
+    return [f"Stock: {' x '.join(number(length, 3) for length in blank.size)} mm along the part's axes; from the "
+            f"origin {', '.join(ranges)}."]
 
 
 def _angles(program: Program, dialect: Dialect, angles: Array) -> str:

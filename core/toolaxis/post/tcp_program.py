@@ -20,7 +20,7 @@ from toolaxis.machine.kinematics import placement
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options, ProgramContext
-from toolaxis.post.program import Dialect, Lines, number, setting_of
+from toolaxis.post.program import Dialect, Lines, number, origin_comments, setting_of
 
 Array = NDArray[np.float64]
 
@@ -218,7 +218,7 @@ def courses_text(program: ProgramContext, control: TipControl, found: Sequence[T
     control : TipControl
     found : sequence of TcpPath
     """
-    lines = control.start(program)
+    lines = [*control.start(program), *origin_comments(program, control.dialect)]
     for course in found:
         lines += [control.dialect.comment(course.name.upper()), *control.begin(program, course)]
         lines += _motions(program, course, control)

@@ -25,6 +25,7 @@ from toolaxis.job.inputs.spec import (
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
+from toolaxis.job.planning.edit_origin import datum_of
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
 from toolaxis.job.planning.parallel import check_workers
@@ -38,7 +39,6 @@ from toolaxis.job.planning.unreachable import with_unreachable
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
-from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.choices import FEEDRATE, ISO, SCALLOP, SPINDLE
 from toolaxis.plan.held_face import HeldFace
@@ -52,6 +52,7 @@ from toolaxis.shape.bounding.bounding_tree import cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.shape.part import Part
+from toolaxis.shape.work_origin import format_margins, parse_margins
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import INDEXED, Asked, Strategy
 from toolaxis.tolerances import Tolerance, ToleranceLike
@@ -75,6 +76,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
          least_lean: float | None = None, greatest_step_over: float = 0.0,
          allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None, lead: float = 0.0,
+         origin: str = "", stock_box: Sequence[float] | float | str | None = None,
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
@@ -180,6 +182,13 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         What is left on some faces in place of `allowance`, mm, by their numbers: they are machined to that height, and
         kept to it while others are machined.  A part with such faces is planned face by face, its blades not told
         apart.
+    origin : str
+        Where work coordinate systems have their origin, in place of `datum`: "part:top" or "stock:top-front-left", with
+        a point of the box around the part or of its stock, or "point:x,y,z".  Boxes lie along the part's axes; left is
+        -x and front -y.
+    stock_box : float, sequence of float or text, optional
+        Margins of the box that the part is cut from, mm: one for all sides, or six for -x, +x, -y, +y, -z and +z.  The
+        setup sheet tells it; axes and passes are found without it.
     progress : Progress
 
     Returns
@@ -218,7 +227,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                         SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
                         chosen.roughness if roughness is None else float(roughness), float(limit), passes,
                         numbers_to_avoid(avoid), held, float(stock), float(greatest_step_over),
-                        parse_allowances(allowance_on), float(lead))
+                        parse_allowances(allowance_on), float(lead), origin,
+                        format_margins(parse_margins(stock_box)))
     if objective == "time":
         require_machine_limits(mounting)
     if len(rack.tools) > 1:
@@ -253,7 +263,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
             loaded.allowances.check_alike(face)
     if inputs.stock > 0:
         loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
-    job = PlanningJob(loaded, cutter, inputs, allowed, bodies, as_rows(datum, 3, "datum")[0], regions, orientations,
+    job = PlanningJob(loaded, cutter, inputs, allowed, bodies, datum_of(inputs, datum, loaded), regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     free, in_clamping = cut_faces(loaded, chosen_faces)
     if len(rack.tools) > 1:

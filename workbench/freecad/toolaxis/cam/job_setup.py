@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import count
 
 import FreeCAD
+from freecad.toolaxis.cam.stock import origin_comments, place_stock
 from freecad.toolaxis.cam.tools import add_controller, fill_controller
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.properties import Property, ensure
@@ -78,7 +79,8 @@ def bare_job(document, group, frame):
         _show_job(job)
     for model, thing in zip(job.Model.Group, things, strict=True):
         _turn_model(model, thing, frame)
-    _stand_stock(job)
+    if not place_stock(job, group, frame):
+        _stand_stock(job)
     job.SetupSheet.HorizRapid = job.SetupSheet.VertRapid = group[0].rapid / 60
     controllers = {}
     for one in group:
@@ -87,6 +89,7 @@ def bare_job(document, group, frame):
     names = ", ".join(one.label for one in group)
     axes = "; ".join(dict.fromkeys("({:.6f}, {:.6f}, {:.6f})".format(*one.matrix[:3, 2]) for one in group))
     job.Description = translate("ToolAxis", "Tool Axis: {}; tool axis {} in the document").format(names, axes)
+    job.Description += "".join(f"; {line[1:-1]}" for line in origin_comments(group[0], frame))
     return job, controllers
 
 

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 
 import FreeCAD
 from freecad.toolaxis.cam.job_setup import Passes, add_passes, bare_job, plane_comments, safe_height, tool_of
+from freecad.toolaxis.cam.stock import check_one_setup, origin_comments
 from freecad.toolaxis.cam.work_offsets import offsets_for, tell_shared
 from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.children import child
@@ -62,6 +63,7 @@ def make_jobs(document, operations, progress=None):
     ready = [one for operation in operations if operation.Motions or operation.Stale for one in _ready(operation)]
     if not ready:
         raise InvalidInput("there is no operation with passes: select faces and run Plan Orientations first")
+    check_one_setup(ready)
     progress = progress_of(progress)
     with one_step(document, translate("ToolAxis", "Make CAM jobs")), _active(document):
         kept, offsets = _take_away(document, list({one.operation.Name: one.operation for one in ready}.values()))
@@ -178,16 +180,21 @@ def _on_planes(document, groups, offset):
     import Path.Main.Workplane as Workplanes
 
     everything = [one for group in groups for one in group]
-    job, controllers = bare_job(document, everything, FreeCAD.Placement())
+    frame = FreeCAD.Placement()
+    if everything[0].inputs.origin:
+        frame.Base = placement_from(everything[0].matrix).Base
+    job, controllers = bare_job(document, everything, frame)
     job.Fixtures = offset
     planes = []
     try:
         for number, group in enumerate(groups, 1):
             label, plane = translate("ToolAxis", "Orientation {}").format(number), placement_from(group[0].matrix)
-            planes.append(Workplanes.createWorkplane(job, label=label, placement=plane))
-            height = safe_height(job, everything, plane, FreeCAD.Placement())
+            stands = frame.inverse().multiply(plane)
+            planes.append(Workplanes.createWorkplane(job, label=label, placement=stands))
+            height = safe_height(job, everything, plane, frame)
             for one in group:
-                made = add_passes(job, controllers[tool_of(one)], one, (plane, height))
+                comments = origin_comments(one, plane)
+                made = add_passes(job, controllers[tool_of(one)], one, (plane, height), comments)
                 if not hasattr(made, "Workplane"):
                     raise ValueError("operations with given passes have no work plane")
                 made.Workplane = planes[-1]
@@ -215,9 +222,10 @@ def _job(document, group, offset):
     plane = placement_from(group[0].matrix)
     job, controllers = bare_job(document, group, plane)
     job.Fixtures = offset
+    comments = [*origin_comments(group[0], plane), *plane_comments(plane)]
     height = safe_height(job, group, plane, plane)
     for one in group:
-        add_passes(job, controllers[tool_of(one)], one, (plane, height), plane_comments(plane))
+        add_passes(job, controllers[tool_of(one)], one, (plane, height), comments)
     return job
 
 

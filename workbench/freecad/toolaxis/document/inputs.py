@@ -9,6 +9,7 @@ from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.machine_limits import PREFIX
 from freecad.toolaxis.document.placement import matrix_of
 from freecad.toolaxis.document.strategies import INDEXED, ROUGHNESS, check_strategy, keeps_roughness
+from freecad.toolaxis.document.work_origin import is_on_box
 
 from toolaxis.plan.choices import ISO
 
@@ -106,6 +107,12 @@ class JobInputs:
         Numbers of faces of the part that no tool may touch, "3,5-8".
     held : str
         The side that is held in the clamping, "z<12.5", in the document's space.
+    origin : str
+        Where work coordinate systems have their origin, "stock:top-front-left" with the box along the document's axes,
+        or "point:x,y,z" for a picked vertex, in the first part's own frame; empty for the origin of that.
+    stock_box : str
+        Margins of the box that the part is cut from, "2" or "1,1,1,1,0,2" for -x, +x, -y, +y, -z and +z, mm; empty
+        where the CAM job makes it.
     """
 
     faces: tuple = ()
@@ -143,6 +150,8 @@ class JobInputs:
     lead: float = 0.0
     avoid_faces: str = ""
     held: str = ""
+    origin: str = ""
+    stock_box: str = ""
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
@@ -171,7 +180,7 @@ class JobInputs:
     @property
     def placed(self):
         """Whether something is asked for in the document's space, in which the part has to stay where it is."""
-        return bool(self.limits or self.held)
+        return bool(self.limits or self.held or self.stock_box or is_on_box(self.origin))
 
     def assembled(self):
         """The whole tool, where it is the only one.
@@ -241,7 +250,8 @@ class JobInputs:
                          roughness=self.roughness / 1000 if keeps_roughness(self.strategy) else 0.0,
                          passes=self.passes, avoid=numbers_to_avoid(self.avoid_faces), held=self.held,
                          stock=self.stock, greatest_step_over=self.greatest_step_over,
-                         allowance_on=parse_allowances(self.allowance_on), lead=self.lead)
+                         allowance_on=parse_allowances(self.allowance_on), lead=self.lead, origin=self.origin,
+                         stock_box=self.stock_box)
 
     def check_tools(self):
         """Check the tools, and that what is asked for goes with them and with the parts.
@@ -264,6 +274,21 @@ class JobInputs:
         if len(self.things) > 1 and (job.avoid or job.allowance_on):
             raise InvalidInput("faces to avoid and allowances on faces are numbered in one part and several are "
                                "chosen: choose faces of one part")
+        self.check_one_part()
+
+    def check_one_part(self):
+        """Check that an origin and a stock of their own are for one part.
+
+        Raises
+        ------
+        InvalidInput
+            When faces of several are chosen.
+        """
+        from toolaxis.errors import InvalidInput
+
+        if len(self.things) > 1 and (self.origin or self.stock_box):
+            raise InvalidInput("origin and stock are chosen for one part and faces of several are chosen: choose faces "
+                               "of one part, or the part's own origin and no stock")
 
     def check_counts(self):
         """Check the numbers of sub-surfaces and axes, and the strategy.
@@ -304,7 +329,7 @@ def inputs_of(thing):
                      thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern,
                      tuple(thing.Rack), thing.MostTools or None, thing.ToolNumber, thing.ToolTitle, thing.Stock.Value,
                      thing.LeastLean.Value, thing.GreatestStepOver.Value, thing.AllowanceOn, thing.Lead.Value,
-                     thing.AvoidFaces, thing.Held)
+                     thing.AvoidFaces, thing.Held, thing.Origin, thing.StockBox)
 
 
 def flute_of(tool):

@@ -57,7 +57,11 @@ INPUTS = (
     Property("Length", "Lead", _ASKED, "Radius of the arcs to and from passes, 0: straight ramps; double-click the "
              "operation to change it", True),
     Property("String", "AvoidFaces", _ASKED, "Faces of the part that no tool may touch: 3,5-8"),
-    Property("String", "Held", _ASKED, "The side that is held in the clamping: z<12.5"))
+    Property("String", "Held", _ASKED, "The side that is held in the clamping: z<12.5"),
+    Property("String", "Origin", _ASKED, "Origin of the work coordinates: stock:top, part:top-front-left or "
+             "point:X,Y,Z; nothing: that of the part"),
+    Property("String", "StockBox", _ASKED, "Margins of the stock: 2, or 1,1,1,1,0,2 for -X, +X, -Y, +Y, -Z, +Z; "
+             "nothing: as the CAM job makes it"))
 LOCKS = (
     Property("Bool", "AxisLocked", _LOCKS, "The axis is kept when the operation is computed again"),
     Property("Bool", "FeedLocked", _LOCKS, "The feed direction is kept when the operation is computed again"),
@@ -84,6 +88,7 @@ KEPT = (
     Property("String", "PlannedWith", _KEPT, "Inputs at the time of planning, JSON", True, True),
     Property("FloatList", "Signature", _KEPT, "Shapes at the time of planning", True, True),
     Property("StringList", "FrameFeatures", _KEPT, "Axes and planes of the work coordinate system", True, True),
+    Property("VectorList", "StockCorners", _KEPT, "Corners of the stock at the time of planning", True, True),
     Property("IntegerList", "Motions", _KEPT, "Kind of each motion", True, True),
     Property("IntegerList", "Starts", _KEPT, "Where each pass starts", True, True))
 VERDICT = (
@@ -225,7 +230,8 @@ def set_inputs(thing, inputs):
            Compare=inputs.compare, Strategy=inputs.strategy, Roughness=inputs.roughness, Rack=list(inputs.rack),
            MostTools=inputs.most_tools or 0, ToolNumber=inputs.tool_number, ToolTitle=inputs.tool_title,
            Stock=inputs.stock, LeastLean=inputs.least_lean, GreatestStepOver=inputs.greatest_step_over,
-           AllowanceOn=inputs.allowance_on, Lead=inputs.lead, AvoidFaces=inputs.avoid_faces, Held=inputs.held)
+           AllowanceOn=inputs.allowance_on, Lead=inputs.lead, AvoidFaces=inputs.avoid_faces, Held=inputs.held,
+           Origin=inputs.origin, StockBox=inputs.stock_box)
 
 
 def set_results(thing, found, not_checked):

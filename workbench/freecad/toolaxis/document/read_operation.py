@@ -69,6 +69,7 @@ class OperationRecord:
         ways = {name: getattr(self.path, name) @ turn[:3, :3].T for name in ("axis", "normal")}
         places = {name: getattr(self.path, name) @ turn[:3, :3].T + turn[:3, 3] for name in ("cc", "cl")}
         matrix, own = turn @ self.matrix, str(self.details["face"])
+        matrix[:3, 3] = self.matrix[:3, 3]  # all operations have one origin
         suffix = self.details["label"].removeprefix(own) if self.details["label"].startswith(own) else ""
         return replace(self, path=replace(self.path, **ways, **places), matrix=matrix,
                        orientation=replace(self.orientation, axis=matrix[:3, 2]),

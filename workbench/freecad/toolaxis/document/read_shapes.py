@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, replace
 
+from freecad.toolaxis.document.work_origin import origin_in_document
+
 #: Surfaces that are no sculptured ones, as FreeCAD's Part names them.
 _PLAIN = ("Plane", "Cylinder", "Cone")
 
@@ -16,13 +18,16 @@ class ShapesRead:
     labels, obstacle_labels : tuple of str
     numbers : tuple of int
         Faces to machine, numbered through all shapes.
+    origin : str
+        Of the work coordinate systems, in the document's space; empty for the datum.
     datum : tuple of float
-        Origin of the first part's own frame, mm.
+        Origin of the first part's own frame, mm; zeros where there is another one.
     """
 
     shapes: tuple
     labels: tuple
     numbers: tuple
+    origin: str
     datum: tuple
     obstacles: tuple
     obstacle_labels: tuple
@@ -50,9 +55,10 @@ class ShapesRead:
         known = {(thing.Document.Name, thing.Name) for thing in things}
         avoided = [thing for thing in inputs.obstacles if (thing.Document.Name, thing.Name) not in known]
         numbers = tuple(numbered(inputs, shapes))
-        return cls(tuple(shape.copy() for shape in shapes), tuple(map(name_of, things)), numbers,
-                   tuple(shapes[0].Placement.Base), tuple(shape_of(thing).copy() for thing in avoided),
-                   tuple(map(name_of, avoided)))
+        origin = origin_in_document(inputs.origin, shapes)
+        return cls(tuple(shape.copy() for shape in shapes), tuple(map(name_of, things)), numbers, origin,
+                   (0.0, 0.0, 0.0) if origin else tuple(shapes[0].Placement.Base),
+                   tuple(shape_of(thing).copy() for thing in avoided), tuple(map(name_of, avoided)))
 
     def division(self, inputs):
         """Sub-surfaces that are kept as they are, as the library takes them.

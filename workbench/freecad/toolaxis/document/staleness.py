@@ -18,7 +18,7 @@ _GRID = 4
 _USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy": INDEXED, "roughness": ROUGHNESS,
           "flute_length": 0.0, "passes": ISO, "rack": (), "most_tools": None, "tool_number": 0, "tool_title": "",
           "stock": 0.0, "least_lean": 0.0, "greatest_step_over": 0.0, "allowance_on": "", "lead": 0.0,
-          "avoid_faces": "", "held": ""}
+          "avoid_faces": "", "held": "", "origin": "", "stock_box": ""}
 
 
 def signature(things, obstacles=(), turned=False):
@@ -206,4 +206,4 @@ def _what_changed(planned, found, obstacles):
         return ["the part has changed"]
     if len(planned) != len(found) or not same(planned[:size * (1 + obstacles)], found[:size * (1 + obstacles)]):
         return ["a body to avoid was moved or changed"]
-    return ["the part was moved or turned, and the limits of the axis or the held side were not"]
+    return ["the part was moved or turned, and the limits of the axis, the held side or the stock were not"]

@@ -55,6 +55,7 @@ def task(inputs):
                        passes=inputs.passes, obstacles=list(bodies) or None, datum=source.datum,
                        most_tools=inputs.most_tools, stock=job.stock, greatest_step_over=job.greatest_step_over,
                        allowance_on=dict(job.allowance_on), lead=job.lead, avoid=job.avoid, held=job.held,
+                       origin=source.origin, stock_box=job.stock_box,
                        progress=progress, **rates, **asked_of(inputs))
         refuse_in_vain(made)
         return made

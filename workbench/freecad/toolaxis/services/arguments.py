@@ -8,6 +8,7 @@ import FreeCAD
 from freecad.toolaxis.document.kinds import is_operation, is_plan
 from freecad.toolaxis.document.read_shapes import sculptured
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES
+from freecad.toolaxis.document.work_origin import origin_from_vertex
 
 _UNITS = FreeCAD.Units
 _FACES = "give an object, (object, \"Face7\"), \"Block.Face7\", or a list of these"
@@ -26,7 +27,7 @@ _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction":
 _COUNTS, _SWITCHES = ("regions", "orientations", "most_tools"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
-_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES, "rack")
+_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES, "rack", "origin", "stock_box")
 
 
 def _refusal(text):
@@ -224,6 +225,10 @@ def fields_of(document, given):
             found[name] = bool(value)
         elif name == "rack":
             found[name] = _rack(value)
+        elif name == "origin":
+            found[name] = _origin(document, value)
+        elif name == "stock_box":
+            found[name] = _margins(value)
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
@@ -299,6 +304,30 @@ def _text(name, value):
     if not isinstance(value, str):
         raise _refusal(f"{name} is {_value_text(value)}: give a text, such as {_TEXTS[name]}")
     return value
+
+
+def _origin(document, value):
+    """The short form of an origin, from that or from a vertex: (object, "Vertex7") or "Block.Vertex7"."""
+    from toolaxis.shape.work_origin import parse_origin
+
+    pair = value
+    if isinstance(value, str):
+        owner, dot, vertex = value.partition(".")
+        if not dot or not vertex.rsplit(".", 1)[-1].startswith("Vertex"):
+            parse_origin(value)
+            return value
+        pair = _find_object(document, "origin", owner), vertex
+    if not _is_pair(pair) or not isinstance(pair[1], str):
+        raise _refusal(f"origin is {_value_text(value)}: give \"part:top\", \"stock:top-front-left\", or a vertex such "
+                       "as \"Block.Vertex7\"")
+    return origin_from_vertex(_own(document, "origin", pair[0]), pair[1])
+
+
+def _margins(value):
+    """Margins of the stock in their short form."""
+    from toolaxis.shape.work_origin import format_margins, parse_margins
+
+    return format_margins(parse_margins(value))
 
 
 def _things(document, name, value):

@@ -24,7 +24,7 @@ _SHARED = {"scallop": "scallop heights", "tolerance": "machining tolerances", "a
            "direction": "directions", "passes": "kinds of passes", "stock": "heights of stock",
            "least_lean": "least leans", "greatest_step_over": "greatest step-overs",
            "allowance_on": "allowances on faces", "lead": "radii of lead-in and lead-out",
-           "avoid_faces": "faces to avoid", "held": "held sides"}
+           "avoid_faces": "faces to avoid", "held": "held sides", "origin": "origins", "stock_box": "stocks"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}
 
 
@@ -139,7 +139,7 @@ def plan_task(operations):
             copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
             copy = replace(copy, details=_number_details(copy.details, before))
             rows.append(_PlannedRow(copy, tools[place], (), {}))
-    job, aside = together.job(), _areas_in_no_operation(operations)
+    job, aside = replace(together.job(), origin=source.origin), _areas_in_no_operation(operations)
 
     def compute(progress):
         from toolaxis.plan.plan import Plan
@@ -265,7 +265,9 @@ def _together(operations, inputs):
     things = {thing.Name for one in inputs for thing in one.things}
     obstacles = {body.Name: body for one in inputs for body in one.obstacles if body.Name not in things}
     faces = dict.fromkeys(face for one in inputs for face in one.faces)
-    return replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+    together = replace(first, faces=tuple(faces), obstacles=tuple(obstacles.values()))
+    together.check_one_part()
+    return together
 
 
 def _offsets(together):

@@ -13,7 +13,7 @@ _HELD = {"tool": "Tool", "stickout": "StickOut", "flute_length": "FluteLength", 
          "direction": "Direction", "spindle": "SpindleSpeed", "method": "Method", "strategy": "Strategy",
          "roughness": "Roughness", "passes": "CutPattern", "stock": "Stock", "least_lean": "LeastLean",
          "greatest_step_over": "GreatestStepOver", "allowance_on": "AllowanceOn", "lead": "Lead",
-         "avoid_faces": "AvoidFaces", "held": "Held"}
+         "avoid_faces": "AvoidFaces", "held": "Held", "origin": "Origin", "stock_box": "StockBox"}
 
 
 def record(*lines):
@@ -78,7 +78,7 @@ def plan_line(inputs):
                                                        "regions", "orientations", "method", "blades", "compare",
                                                        "strategy", "roughness", "tolerance", "passes", "most_tools",
                                                        "stock", "least_lean", "greatest_step_over", "allowance_on",
-                                                       "lead", "avoid_faces", "held")
+                                                       "lead", "avoid_faces", "held", "origin", "stock_box")
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]

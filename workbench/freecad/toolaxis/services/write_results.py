@@ -24,6 +24,7 @@ from freecad.toolaxis.document.transaction import one_step, remove
 from freecad.toolaxis.document.verdict_maps import keep
 from freecad.toolaxis.document.view_providers import attach_view
 from freecad.toolaxis.document.work_coordinates import add_frame, place_frame
+from freecad.toolaxis.document.work_origin import stock_corners
 
 translate = FreeCAD.Qt.translate
 
@@ -222,6 +223,7 @@ def _keep(operation, inputs, which, names):
                                     **{name: value for name, value in kept.items() if value}})
     operation.PlannedWith = digest(inputs)
     operation.Signature = signature([inputs.faces[0][0]], inputs.obstacles, inputs.placed)
+    operation.StockCorners = stock_corners(plan)
     operation.Motions = [] if op.path is None else [int(kind) for kind in op.path.kind]
     operation.Starts = [] if op.path is None else [int(start) for start in op.path.breaks]
 

@@ -1,7 +1,6 @@
 """The fields of the planning panel: what they hold, and in one sentence why that is not possible."""
 
 from contextlib import suppress
-from dataclasses import replace
 from math import degrees
 
 import FreeCAD
@@ -10,6 +9,8 @@ from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.plan.rack_choice import RackChoice
+from freecad.toolaxis.gui.plan.setup_tab import SetupTab
+from freecad.toolaxis.gui.plan.shown_inputs import inputs_to_show
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
 from freecad.toolaxis.services.background import sentence
@@ -56,6 +57,7 @@ class PlanForm:
         self.quantities["leastLean"] = QuantityField(self._find("leastLean"), "deg", (0, 4))
         self.lines = {field: self._find(field, QtWidgets.QLineEdit) for field in _LINES}
         self.racks = RackChoice(form)
+        self.setup = SetupTab(form, self.faces)
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.kind.addItems([translate("ToolAxisPlan", one.title) for one in cutters().values()])
@@ -271,7 +273,7 @@ class PlanForm:
         ----------
         inputs : freecad.toolaxis.document.inputs.JobInputs
         """
-        self.unshown, inputs = _inputs_to_show(inputs, self.spindle.maximum())
+        self.unshown, inputs = inputs_to_show(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
@@ -295,6 +297,7 @@ class PlanForm:
         for field, name in _LINES.items():
             self.lines[field].setText(getattr(inputs, name))
         self.racks.choose(inputs.rack, inputs.most_tools)
+        self.setup.fill(inputs)
         self.given = self.tool_text, inputs.tool_number, inputs.tool_title
         self.set_limits(inputs.limits)
 
@@ -318,6 +321,7 @@ class PlanForm:
                 "flute_length": self.quantities["fluteLength"].value,
                 **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
+                "origin": self.setup.origin, "stock_box": self.setup.stock_box,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
                 "passes": PASSES[self._find("passes", QtWidgets.QComboBox).currentIndex()]
@@ -342,33 +346,7 @@ class PlanForm:
             return sentence(reason)
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")
-        return ""
-
-
-def _inputs_to_show(inputs, fastest):
-    """Why fields cannot show some inputs, one sentence or none, and inputs that they can show."""
-    from toolaxis.errors import InvalidInput
-    from toolaxis.partition.partition import check_count
-    from toolaxis.tools.tool import Tool
-
-    checks = {"tool": lambda: Tool.parse(inputs.tool), "regions": lambda: check_count(inputs.regions),
-              "orientations": lambda: check_count(inputs.orientations, "orientations"),
-              "spindle": lambda: _check_spindle(inputs.spindle, fastest)}
-    reasons = {}
-    for name, look in checks.items():
-        try:
-            look()
-        except InvalidInput as reason:
-            reasons[name] = sentence(reason)
-    usual = JobInputs()
-    return "; ".join(reasons.values()), replace(inputs, **{name: getattr(usual, name) for name in reasons})
-
-
-def _check_spindle(speed, fastest):
-    from toolaxis.errors import InvalidInput
-
-    if not 0 < speed <= fastest:
-        raise InvalidInput(f"spindle is {speed:g} rev/min: it must be above zero, and at most {fastest} rev/min")
+        return self.setup.refusal
 
 
 def check(values):

@@ -17,12 +17,14 @@ from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.account import headline
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import AxisLocks
+from freecad.toolaxis.gui.plan.move_origin import move_origin
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
 from freecad.toolaxis.gui.plan.player import PlanPlayer
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
+from freecad.toolaxis.gui.plan.setup_preview import SetupPreview
 from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
@@ -43,7 +45,7 @@ _TYPED = 0
 #: Tabs that scroll, each for itself, below what is always in sight.  The layout has all of it in a splitter with one
 #: side: FreeCAD gives a panel whose height depends on its width, as that of a label of several lines does, all the
 #: height it would like, and scrolls it as a whole; a splitter tells no such thing.
-_PAGES = ("jobTab", "toolTab", "advancedTab", "resultTab")
+_PAGES = ("jobTab", "setupTab", "toolTab", "advancedTab", "resultTab")
 #: Axes that make a map worth showing.
 _ENOUGH = 40
 
@@ -66,11 +68,12 @@ class PlanPanel(Panel):
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "plan.svg")))
         self.fields = PlanForm(self.form)
         self.preview = Preview(document)
+        self.setup_preview = SetupPreview(document, self.form, self.fields.setup)
         self.view = AxisView(self.form, self.preview)
         self.player = PlanPlayer(document, self.form, self.preview)
         self.remedies = RemedyRow(self.form)
         self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
-        self.computed = None
+        self.computed, self.refusal = None, ""
         self.outrun = False
         self._fill(inputs)
         self._connect()
@@ -86,7 +89,7 @@ class PlanPanel(Panel):
     def modifyStandardButtons(self, box):
         """Called by FreeCAD with the box of buttons; OK stays locked until there is a plan, and `accept` refuses."""
         super().modifyStandardButtons(box)
-        self._show_state()
+        self.show_state()
 
     def accept(self):
         """Put the plan into the document, as one undo step; refused without a plan."""
@@ -111,7 +114,7 @@ class PlanPanel(Panel):
     def ready(self):
         """Whether there is a plan for what the fields hold, with an axis for at least one face."""
         plan = self.view.plan
-        return (plan is not None and self.work is None and self.computed is not None
+        return (plan is not None and self.work is None and self.computed is not None and not self.refusal
                 and any(op.done for op in plan.operations))
 
     def _fill(self, inputs):
@@ -138,6 +141,7 @@ class PlanPanel(Panel):
         form = self.form
         self.fields.on_change(self._edited)
         self.fields.racks.on_change(self._rack_chosen)
+        self.fields.setup.on_change(self._setup_edited)
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
         form.facesFilter.textChanged.connect(self.fields.faces.show_matching)
@@ -147,7 +151,7 @@ class PlanPanel(Panel):
         form.stop.clicked.connect(self.stop)
         form.pictures.clicked.connect(self.draw)
         form.playAll.toggled.connect(self.play)
-        self.view.changed.connect(self._show_state)
+        self.view.changed.connect(self.show_state)
         self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
         self.remedies.chosen.connect(self.compute_again)
@@ -189,6 +193,11 @@ class PlanPanel(Panel):
             self.problem = sentence(reason)
         self._changed()
 
+    def _setup_edited(self):
+        """Origin and stock change no axis: a plan that is there goes along."""
+        if not move_origin(self):
+            self._edited()
+
     def _edited(self):
         """The user has changed a field: what no field could show is given up."""
         self.fields.unshown = ""
@@ -203,14 +212,15 @@ class PlanPanel(Panel):
         self.form.facesTold.setText(told)
         self.form.facesTold.setToolTip(told)
         self.refusal = self.fields.refusal()
-        self._show_state()
+        self.show_state()
 
-    def _show_state(self):
+    def show_state(self):
+        """Enable what can be done now, and say how things stand."""
         form, computing = self.form, self.work is not None
         form.compute.setEnabled(not computing and not self.refusal)
         form.stop.setEnabled(computing)
         form.progress.setVisible(computing)
-        for page in (form.jobPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
+        for page in (form.jobPage, form.setupPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
             page.setEnabled(not computing)
         form.playAll.setEnabled(self.ready)
         if not self.ready or self.player.plan is not self.view.plan:
@@ -249,7 +259,7 @@ class PlanPanel(Panel):
         """Compute off the GUI thread; refused while the fields are not right."""
         self.refusal = self.fields.refusal()
         if self.refusal or self.work is not None:
-            self._show_state()
+            self.show_state()
             return
         self.problem, self.outrun, self.standing = "", False, None
         self.remedies.clear()
@@ -260,7 +270,7 @@ class PlanPanel(Panel):
             task = api.task(inputs)
         except Exception as reason:
             self.problem = sentence(reason)
-            self._show_state()
+            self.show_state()
             return
         titles = titles_of(inputs)
         self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
@@ -270,7 +280,7 @@ class PlanPanel(Panel):
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(self._not_computed)
         self.work.cancelled.connect(lambda: self._not_computed(""))
-        self._show_state()
+        self.show_state()
         self.ongoing.begin(translate("ToolAxis", "Reading the part"))
         self.work.start()
 
@@ -285,7 +295,7 @@ class PlanPanel(Panel):
         self.work.done.connect(self._drawn)
         self.work.failed.connect(self._not_computed)
         self.work.cancelled.connect(lambda: self._drawn(()))
-        self._show_state()
+        self.show_state()
         self.ongoing.begin(translate("ToolAxis", "Drawing"))
         self.work.start()
 
@@ -303,7 +313,7 @@ class PlanPanel(Panel):
 
     def _drawn(self, pictures):
         self.work = None
-        self._show_state()
+        self.show_state()
         if pictures:
             show_pictures(pictures)
 
@@ -368,7 +378,7 @@ class PlanPanel(Panel):
         self.view.show(plan, pictures, titles, AxisLocks(inputs, plan))
         self.remedies.show(plan, inputs)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
-        self._show_state()
+        self.show_state()
 
     def _not_computed(self, message):
         self.work = None
@@ -376,7 +386,7 @@ class PlanPanel(Panel):
         if self.view.plan is None:
             self.view.clear()
         self.view.show_tool()
-        self._show_state()
+        self.show_state()
         if not message:
             self._tell(translate("ToolAxis", "Stopped; the document is unchanged."))
 
@@ -411,17 +421,20 @@ class PlanPanel(Panel):
         things |= {body.Name: body for body in self.fields.avoid.ticked}
         if any(one.Name == name for thing in things.values() for one in (thing, *chain_of(thing))):
             self.outrun = True
+            self.setup_preview.show()
             if self.work is None:
                 self._changed()
 
     def _forget_view(self):
         self.player.forget()
         self.preview.forget()
+        self.setup_preview.forget()
 
     def _let_go(self):
         self.player.close()
         self.view.leave()
         self.preview.clear()
+        self.setup_preview.clear()
 
 
 def _growing(offered):

@@ -181,7 +181,17 @@ class PreviewStations:
         return self.path.cl[k - 1] + part * (self.path.cl[k] - self.path.cl[k - 1]), axis / np.linalg.norm(axis)
 
 
-def _polylines(colour, lines, width):
+def polylines(colour, lines, width):
+    """Lines in one colour, on which no light falls.
+
+    Parameters
+    ----------
+    colour : (float, float, float)
+    lines : sequence of (k, 3) array
+        mm
+    width : float
+        Pixels.
+    """
     node = colour_node(colour, lit=False)
     style = coin.SoDrawStyle()
     style.lineWidth = width
@@ -205,7 +215,7 @@ def _lines(path, colour):
     node = _cuts(path, colour, _THICK)
     between = _runs(path, False)
     if between:
-        node.addChild(_polylines(colours()[1], between, 1.0))
+        node.addChild(polylines(colours()[1], between, 1.0))
     return node
 
 
@@ -214,7 +224,7 @@ def _cuts(path, colour, width):
     node = coin.SoSeparator()
     lines = _runs(path, True)
     if lines:
-        node.addChild(_polylines(colour, lines, width))
+        node.addChild(polylines(colour, lines, width))
     return node
 
 
@@ -232,14 +242,30 @@ def _axes(op):
     from toolaxis.cldata.toolpath import Motion
 
     lines, _ = ends_of(op.path.cl, op.path.axis, op.path.kind == Motion.CUT, SHARE * op.face.diagonal)
-    return _polylines(COLOUR, list(lines), 1.2)
+    return polylines(COLOUR, list(lines), 1.2)
 
 
 def _frame(frame, size):
+    """The work coordinate system at its origin, where its object will stand in the document."""
+    return triad(frame.origin, (frame.x, frame.y, frame.z), size)
+
+
+def triad(origin, ways, size):
+    """Three arrows X, Y and Z.
+
+    Parameters
+    ----------
+    origin : (3,) array
+        mm
+    ways : sequence of (3,) array
+        Their directions, unit vectors.
+    size : float
+        Their length, mm.
+    """
     node = coin.SoAnnotation()  # drawn over everything: part of it may lie inside the part
-    for (name, colour), way in zip(_TRIAD, (frame.x, frame.y, frame.z), strict=True):
-        tip = frame.shown_at + size * way
-        node.addChild(_polylines(colour, [np.array([frame.shown_at, tip])], 3.0))
+    for (name, colour), way in zip(_TRIAD, ways, strict=True):
+        tip = origin + size * way
+        node.addChild(polylines(colour, [np.array([origin, tip])], 3.0))
         label = colour_node(colour, lit=False)
         move = coin.SoTranslation()
         move.translation.setValue(*(float(x) for x in tip + 0.06 * size * way))

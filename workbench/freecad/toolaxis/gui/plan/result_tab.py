@@ -343,6 +343,11 @@ class AxisView(QtCore.QObject):
                 held.discard(self.operation.number)
             self._take(self._best(self.operation))
 
+    def show_moved(self):
+        """Show the plan again after its origin was moved."""
+        self._show_operation()
+        self.changed.emit()
+
     def _take(self, operation):
         from toolaxis.job.planning.edit_axis import with_operations
 
