@@ -16,6 +16,7 @@ from toolaxis.shape.analytic import (
     ToroidalSurface,
 )
 from toolaxis.shape.face import Face
+from toolaxis.shape.nurbs import NurbsSurface
 
 RING = np.linspace(0, 2 * np.pi, 400, endpoint=False)
 
@@ -51,6 +52,8 @@ def test_areas_of_whole_surfaces(surface: Any, area: float) -> None:
 def test_area_of_a_saddle_by_adaptive_quadrature() -> None:
     wanted, _ = dblquad(lambda y, x: np.sqrt(1 + (x**2 + y**2) / 62500), -50, 50, -50, 50)
     assert Face(HyperbolicParaboloid().nurbs()).area == pytest.approx(wanted, rel=1e-9)
+    corners = np.array([[[x, y, x * y / 250] for y in (-50.0, 50.0)] for x in (-50.0, 50.0)])
+    assert Face(NurbsSurface.from_points(corners, (1, 1))).area == pytest.approx(wanted, rel=1e-9)
 
 
 def test_areas_of_trimmed_planes() -> None:

@@ -8,19 +8,26 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.golden_section import least_between
-from toolaxis.numeric.polygons import stations, walk
+from toolaxis.numeric.polygons import signed_area, stations, walk
 from toolaxis.numeric.vectors import lengths
 
 if TYPE_CHECKING:
     from toolaxis.shape.face import Face
+    from toolaxis.shape.nurbs import NurbsSurface
 
 Array = NDArray[np.float64]
 
 #: Panels over the range of v, pieces over the range of u, and Gauss points in each.
 PANELS, PIECES, POINTS = 48, 12, 4
 
+#: Share of its area by which a plane may be no parallelogram.
+_TWISTED = 1e-12
+
 #: Samples along each side of the face in the search of its extremes.
 SAMPLES = 48
+
+#: Steps of the search between two samples: to 4e-6 of their distance, and so to far less than that of the height.
+_STEPS = 26
 
 
 def area(face: "Face") -> float:
@@ -36,11 +43,26 @@ def area(face: "Face") -> float:
     u0, u1, v0, v1 = face.bounds
     breaks = face.surface.breaks
     cuts = _cuts(breaks[0], np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks[1], face.outline[:1])
+    even = _even_density(face.surface)
     total = 0.0
     for loops in outer_with_holes(face.outline) if len(face.outline) > 1 else [face.outline]:
-        sizes = [abs(_area_inside(face, loop, cuts)) for loop in loops]
+        sizes = [abs(_area_inside(face, loop, cuts) if even is None else even * signed_area(loop)) for loop in loops]
         total += float(sizes[0] - sum(sizes[1:]))
     return total
+
+
+def _even_density(surface: "NurbsSurface") -> float | None:
+    """Area for a unit of both parameters of a parallelogram, as planes are; None for other surfaces."""
+    if surface.control.shape[:2] != (2, 2) or np.ptp(surface.control[..., 3]) > 0:
+        return None
+    corners = surface.control[..., :3] / surface.control[..., 3:]
+    along, across = corners[1, 0] - corners[0, 0], corners[0, 1] - corners[0, 0]
+    twist = corners[1, 1] - corners[0, 0] - along - across
+    size = float(np.linalg.norm(np.cross(along, across)))
+    if np.abs(twist).max() * max(np.abs(along).max(), np.abs(across).max()) > _TWISTED * size:
+        return None
+    (u0, u1), (v0, v1) = surface.domain
+    return size / ((u1 - u0) * (v1 - v0))
 
 
 def _area_inside(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
@@ -160,13 +182,13 @@ def _border_extremes(face: "Face", loop: Array, axis: NDArray[np.int64], sign: A
     position = stations(loop, ((u1 - u0) / SAMPLES, (v1 - v0) / SAMPLES))
     values = face.evaluate(walk(loop, position)).point[:, axis] * sign
     best = values.argmax(axis=0)
-    low = np.where(best > 0, position[best - 1], position[-1] - len(loop))
-    high = np.append(position, len(loop))[best + 1]
-    row = np.arange(len(axis))
+    before = np.where(best > 0, position[best - 1], position[-1] - len(loop))
+    behind = np.append(position, len(loop))[best + 1]
+    low, high = np.concatenate([before, position[best]]), np.concatenate([position[best], behind])
+    row, towards, opposite = np.arange(len(low)), np.tile(axis, 2), -np.tile(sign, 2)
 
-    def height(at: Array) -> Array:
-        return np.asarray(-face.evaluate(walk(loop, at)).point[row, axis] * sign)
+    def depth(at: Array) -> Array:
+        return np.asarray(face.evaluate(walk(loop, at)).point[row, towards] * opposite)
 
-    _, before = least_between(height, low, position[best])
-    _, after = least_between(height, position[best], high)
-    return -np.minimum(before, after)
+    _, least = least_between(depth, low, high, _STEPS)
+    return np.asarray(-least.reshape(2, -1).min(axis=0))

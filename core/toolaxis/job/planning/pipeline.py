@@ -28,7 +28,7 @@ from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_origin import datum_of
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
-from toolaxis.job.planning.parallel import check_workers
+from toolaxis.job.planning.parallel import abreast, check_workers
 from toolaxis.job.planning.planner import PlanningJob, went_on
 from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.rack_blades import plan_blades_with_rack
@@ -48,7 +48,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.fixed_axis import METHODS
 from toolaxis.search.machine_limits import intersect_limits
 from toolaxis.search.time_estimate import require_machine_limits
-from toolaxis.shape.bounding.bounding_tree import cells
+from toolaxis.shape.bounding.bounding_tree import BoundingTree, cells, keep_cells
 from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.shape.part import Part
@@ -61,6 +61,8 @@ from toolaxis.work import LIMIT
 
 #: Planes, cylinders and cones narrower than this many radii of the cutter belong to the skin that they continue.
 WIDE = 4.0
+#: Faces whose cells a process makes at a time.
+_BUNDLE = 8
 
 
 def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scallop: float = SCALLOP, *,
@@ -434,12 +436,28 @@ def _order_operations(plan: Plan, progress: Progress) -> Plan:
 
 
 def _in_cells(job: PlanningJob, progress: Progress) -> None:
-    """Make the cells of all faces before processes are forked, which then share them."""
+    """Make the cells of all faces, before processes are forked that then share them."""
     every = [own for part in (job.part, *job.bodies) for face in part.faces for own in face.own_faces]
-    for k, face in enumerate(every):
-        progress.report("surroundings", k, len(every))
-        with suppress(Exception):  # it is told of the faces to which it matters
-            cells(face)
+    bundles = [every[first:first + _BUNDLE] for first in range(0, len(every), _BUNDLE)]
+
+    def _make(k: int, inner: Progress) -> list[BoundingTree | None]:
+        inner.report("surroundings", k, len(bundles))
+        return [_cells_if_any(face) for face in bundles[k]]
+
+    found = abreast(_make, len(bundles), job.workers, progress)
+    if found.cancelled:
+        raise Cancelled("cancelled by the user")
+    for k, trees in found.results.items():
+        for face, tree in zip(bundles[k], trees, strict=True):
+            if tree is not None:
+                keep_cells(face, tree)
+
+
+def _cells_if_any(face: Face) -> BoundingTree | None:
+    """The cells of a face, without the face; None where they cannot be made, as the faces to which it matters tell."""
+    with suppress(Exception):
+        return replace(cells(face), faces=())
+    return None
 
 
 def _list_obstacles(obstacles: Any) -> list[Any]:

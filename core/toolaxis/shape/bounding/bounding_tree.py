@@ -133,6 +133,20 @@ def cells(face: Face, fineness: float = FINENESS) -> BoundingTree:
     return replace(found[fineness], faces=(face,))
 
 
+def keep_cells(face: Face, tree: BoundingTree, fineness: float = FINENESS) -> None:
+    """Keep the tree of a face that another process has made, as `cells` keeps its own.
+
+    Parameters
+    ----------
+    face : Face
+    tree : BoundingTree
+        Its cells.
+    fineness : float
+        With which they were made, mm.
+    """
+    _known.setdefault(face, {}).setdefault(fineness, replace(tree, faces=()))
+
+
 def merge_trees(parts: Sequence[BoundingTree]) -> BoundingTree:
     """Several trees under one root.
 
