@@ -22,8 +22,8 @@ Bools = NDArray[np.bool_]
 
 #: Numbers of gaps between measured lines that are tried in turn, and those that narrow faces may ask for besides.
 _GAPS, _NARROW_GAPS = (24, 48, 96, 192), (384, 768)
-#: Passes of which is taken how far they run over the face without a break, the share of that length whose pieces may be
-#: shorter than what is taken of them, and how many measured lines cross such a piece.
+#: On so many passes the pieces that lie on the face are measured.  Of their length all together this share may lie in
+#: shorter pieces than the one that counts as short, and so many measured lines cross that one.
 _ASKED, _SHORTEST, _CROSSED = 64, 0.1, 4
 #: All lines together are about this many, or as many as lie `PITCH` apart where that makes fewer.
 _FINE = 1024

@@ -40,15 +40,27 @@ def area(face: "Face") -> float:
     ----------
     face : Face
     """
-    u0, u1, v0, v1 = face.bounds
-    breaks = face.surface.breaks
-    cuts = _cuts(breaks[0], np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks[1], face.outline[:1])
-    even = _even_density(face.surface)
+    density = _even_density(face.surface)
+    if density is not None:
+        def size(loop: Array) -> float:
+            return density * abs(signed_area(loop))
+    else:
+        cuts = _panels(face)
+
+        def size(loop: Array) -> float:
+            return abs(_area_inside(face, loop, cuts))
     total = 0.0
     for loops in outer_with_holes(face.outline) if len(face.outline) > 1 else [face.outline]:
-        sizes = [abs(_area_inside(face, loop, cuts) if even is None else even * signed_area(loop)) for loop in loops]
+        sizes = [size(loop) for loop in loops]
         total += float(sizes[0] - sum(sizes[1:]))
     return total
+
+
+def _panels(face: "Face") -> tuple[Array, Array]:
+    """Lines of constant u and of constant v between which the area is integrated."""
+    u0, u1, v0, v1 = face.bounds
+    breaks = face.surface.breaks
+    return _cuts(breaks[0], np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks[1], face.outline[:1])
 
 
 def _even_density(surface: "NurbsSurface") -> float | None:

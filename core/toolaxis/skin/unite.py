@@ -101,8 +101,8 @@ def _check_hidden(seen: Sequence[SeenFace], label: str, gap: float) -> None:
         places, height = one.project(point), one.heights_of(point)
         above = np.zeros(len(point))
         for other in seen:
-            under = other.contains(places) if other is not one else np.zeros(len(places), dtype=bool)
-            if under.any():
+            under = other.contains(places)
+            if other is not one and under.any():
                 above[under] = np.maximum(above[under], other.heights_at(places[under]) - height[under])
         _check_off(one, label, point, above, gap)
 
