@@ -13,6 +13,9 @@ Index = NDArray[np.intp]
 
 _FIRST_GAPS = 4
 _ROUNDS = 12
+#: Gaps shorter than this share of the face are not divided: where chords still leave the curve there, the normal jumps,
+#: and one of the motions has the jump in it however many there are.
+_LEAST_GAP = 1e-7
 _PROBES = np.array([0.25, 0.5, 0.75])
 #: Gaps, or motions, that are looked at together.
 _GAPS = 20_000
@@ -29,7 +32,7 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
         along0, along1, step of each piece.
     chord : float
         Chord tolerance, mm, kept by the polylines through contacts and tips, and where the axis moves through points
-        on it as far from the tip as the cutter is wide.
+        on it as far from the tip as the cutter is wide, but where the surface's normal jumps.
 
     Returns
     -------
@@ -38,6 +41,7 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
         Sorted by piece, then increasing; both ends included.
     """
     share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
+    least = _LEAST_GAP * (chart.bounds[1] - chart.bounds[0])
     ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
     owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
     low, high = ends[:, :-1].ravel(), ends[:, 1:].ravel()
@@ -46,7 +50,7 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
         if not len(owner):
             break
         away = in_blocks(lambda *gaps: _deviations(chart, cut, *gaps), low, high, pieces[owner, 2], size=_GAPS)
-        parts = np.ceil(1.05 * np.sqrt(away / chord))
+        parts = np.minimum(np.ceil(1.05 * np.sqrt(away / chord)), np.ceil((high - low) / least))
         fine = parts <= 1.05
         done_owner.append(owner[fine])
         done_low.append(low[fine])

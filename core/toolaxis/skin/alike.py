@@ -37,6 +37,8 @@ _BESIDE = 1e-3
 _FEET = 40
 #: How far what else lies around may be beside its like, besides four times as far as the faces are apart, mm.
 _AROUND = 0.05
+#: Room around boxes for rounding, as a share of their diagonals.
+_BOX_ROUNDING = 1e-5
 #: The cosine of the angle by which normals of alike faces, and of their neighbours at the border, may differ.
 _ONE_WAY = float(np.cos(np.radians(2.0)))
 #: Places of a face each way, besides those on its border, of which there are about four times as many.
@@ -309,7 +311,7 @@ class _MotionSearch:
             return True
         moved, room = apply_motion(matrix, feet), _AROUND + 4 * apart
         left = np.ones(len(moved), dtype=bool)
-        for one in self.part.faces:
+        for one in self._faces_near(moved, room):
             if one.number in other.numbers or not left.any():
                 continue
             low, high = _roomy_box(one, room)
@@ -325,7 +327,7 @@ class _MotionSearch:
             points = np.concatenate([self._samples_of(one).point for one in _members_of(face)])
             points = points[::max(1, len(points) // _FEET)]
             found = [np.empty((0, 3))]
-            for one in self.part.faces:
+            for one in self._faces_near(points, reach):
                 low, high = _roomy_box(one, reach)
                 near = ((points >= low) & (points <= high)).all(axis=1)
                 if one.number not in face.numbers and near.any():
@@ -333,6 +335,18 @@ class _MotionSearch:
                     found.append(feet.point[feet.distance <= reach])
             self._feet[face] = np.concatenate(found)
         return self._feet[face]
+
+    def _faces_near(self, points: Array, room: float) -> list[Face]:
+        """The faces of the part whose boxes, with some room around them, meet the box around points."""
+        low, high = self._boxes[:, 0], self._boxes[:, 1]
+        more = (room + _BOX_ROUNDING * np.linalg.norm(high - low, axis=1))[:, None]
+        near = ((points.max(axis=0) >= low - more) & (points.min(axis=0) <= high + more)).all(axis=1)
+        return [self.part.faces[k] for k in np.flatnonzero(near)]
+
+    @cached_property
+    def _boxes(self) -> Array:
+        """The boxes of all faces of the part, (faces, 2, 3) mm."""
+        return np.array([face.box for face in self.part.faces])
 
     def _keeps_part(self, matrix: Array) -> bool:
         """Whether a motion brings every face of the part onto another one, or itself."""
@@ -354,7 +368,7 @@ def _most_apart(face: Face) -> float:
 def _roomy_box(face: Face, room: float) -> Array:
     """The box around a face with some room around it, (2, 3) mm."""
     low, high = face.box
-    more = room + 1e-5 * float(np.linalg.norm(high - low))
+    more = room + _BOX_ROUNDING * float(np.linalg.norm(high - low))
     return np.stack([low - more, high + more])
 
 
