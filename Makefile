@@ -11,7 +11,7 @@ OUT ?= out/demo
 # Python's code is kept: without it each of the hundreds of processes that the tests start reads all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup wheel demo test tests tests-kernel8 test-all lint bench docs clean
+.PHONY: setup wheel release demo test tests tests-kernel8 test-all lint bench docs clean
 
 setup: $(STAMP)
 
@@ -24,6 +24,11 @@ $(STAMP): setup.cfg pyproject.toml
 
 wheel: setup
 	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist .
+
+# Archives, recipe and entries, checked; the wheel is tried in clean environments of these (make release PYTHONS="python3.11 python3.14").
+PYTHONS ?= $(BIN)/python
+release: setup
+	$(BIN)/python resources/release/release.py dist $(foreach python,$(PYTHONS),--python $(abspath $(shell command -v $(python))))
 
 demo: setup
 	$(BIN)/toolaxis plan $(PART) --tool torus-12x1 --scallop 0.02 --out $(OUT)

@@ -6,13 +6,18 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tomllib
 import zipfile
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
+_spec = spec_from_file_location("release", ROOT / "resources" / "release" / "release.py")
+assert _spec is not None and _spec.loader is not None
+release = module_from_spec(_spec)
+_spec.loader.exec_module(release)
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +51,8 @@ def test_what_is_in_it(wheel: Path) -> None:
     for file in ("page.html.j2", "batch.html.j2", "page.css", "page.js"):
         assert f"toolaxis/report/html/{file}" in names
     assert {name.split("/")[0].split("-")[0] for name in names} == {"toolaxis"}
+    known = tomllib.loads((ROOT / "resources" / "release" / "contents.toml").read_text(encoding="utf-8"))
+    assert release.compare_contents(release.list_contents(wheel), known["wheel"], known["largest"]) == []
 
 
 def test_the_tool_library_works_from_where_a_wheel_puts_it(wheel: Path, tmp_path: Path) -> None:
