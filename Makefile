@@ -11,7 +11,7 @@ OUT ?= out/demo
 # Python's code is kept: without it each of the hundreds of processes that the tests start reads all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup wheel release demo test tests tests-kernel8 test-all lint bench docs clean
+.PHONY: setup wheel release site demo test tests tests-kernel8 test-all lint bench docs clean
 
 setup: $(STAMP)
 
@@ -62,6 +62,18 @@ test-all: lint
 
 bench: setup
 	$(BIN)/python -m benchmarks
+
+# The manual as a site in out/site; what it takes is installed when it is asked for.
+SITE := .venv-site
+
+$(SITE)/.installed: resources/site/requirements.txt
+	@test -x $(SITE)/bin/python || $(PYTHON) -m venv $(SITE)
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
+
+site: $(SITE)/.installed
+	rm -rf out/site
+	$(SITE)/bin/sphinx-build -q -W --keep-going -d out/site-read -c resources/site resources/manual out/site
 
 docs: setup
 	$(BIN)/python resources/manual/figures.py
