@@ -73,7 +73,7 @@ $(SITE)/.installed: resources/site/requirements.txt
 
 site: $(SITE)/.installed
 	rm -rf out/site
-	$(SITE)/bin/sphinx-build -q -W --keep-going -d out/site-read -c resources/site resources/manual out/site
+	$(SITE)/bin/sphinx-build -q -E -W --keep-going -d out/site-read -c resources/site resources/manual out/site
 
 docs: setup
 	$(BIN)/python resources/manual/figures.py

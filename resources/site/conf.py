@@ -12,6 +12,7 @@ project, root_doc, language = "toolaxis", "index", "en"
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 myst_heading_anchors = 3
+highlight_language = "none"  # of blocks that name none: commands
 html_theme = "furo"
 html_title = "toolaxis"
 html_favicon = html_logo = str(HERE.parent / "icons" / "toolaxis.svg")
