@@ -32,10 +32,10 @@ def test_the_first_page_leads_to_every_other_one() -> None:
 
 
 def test_formulas_are_converted_and_code_is_not() -> None:
-    text = "with $a_b$ and\n\n$$ x\n= y $$\n\n`cost $5 or $6` at $ 7\n\n```\necho $HOME $PATH\n```\n"
+    text = "with $a_b$ and\n\n$$ x\n= y $$\n\n`cost $5 or $6` at $ 7\n\n```\necho $HOME:$PATH\n```\n"
     assert site_pages.replace_formulas(text, convert) == (
         'with <inline:a_b> and\n\n<div class="formula"><block:x\n= y></div>\n\n`cost $5 or $6` at $ 7\n\n```\necho '
-        "$HOME $PATH\n```\n")
+        "$HOME:$PATH\n```\n")
 
 
 def test_no_dollar_of_the_manual_is_taken_for_a_formula_elsewhere() -> None:
@@ -52,7 +52,7 @@ def test_links_get_titles_in_place_of_file_names() -> None:
 
 @pytest.mark.parametrize(("link", "dead"), [
     ("two.html", False), ("two.html#place", False), ("#here", False), ("two.html#gone", True), ("three.html", True),
-    ("#gone", True), ("https://elsewhere.test/", True), ("data:text/plain,x", False)])
+    ("#gone", True), ("https://elsewhere.test/", True), ("https://elsewhere.test", True), ("data:text/plain,x", False)])
 def test_dead_links_are_found(link: str, dead: bool, tmp_path: Path) -> None:
     (tmp_path / "one.html").write_text(f'<p id="here"><a href="{link}">there</a></p>')
     (tmp_path / "two.html").write_text('<h1 id="place"></h1>')
