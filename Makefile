@@ -11,7 +11,7 @@ OUT ?= out/demo
 # Python's code is kept: without it each of the hundreds of processes that the tests start reads all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test tests tests-kernel8 test-all lint bench docs clean
+.PHONY: setup wheel release site demo test tests tests-kernel8 test-all lint bench docs clean
 
 setup: $(STAMP)
 
@@ -21,6 +21,14 @@ $(STAMP): setup.cfg pyproject.toml
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $(STAMP)
+
+wheel: setup
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist .
+
+# Archives, recipe and entries, checked; the wheel is tried in clean environments of these (make release PYTHONS="python3.11 python3.14").
+PYTHONS ?= $(BIN)/python
+release: setup
+	$(BIN)/python resources/release/release.py dist $(foreach python,$(PYTHONS),--python $(abspath $(shell command -v $(python))))
 
 demo: setup
 	$(BIN)/toolaxis plan $(PART) --tool torus-12x1 --scallop 0.02 --out $(OUT)
@@ -37,9 +45,9 @@ test: lint tests
 tests: setup
 	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 40
 
-# What hands shapes to the CAD kernel and takes them from it once more, on its release 8.
+# What hands shapes to the CAD kernel and takes them from it once more, on its release 8, and the wheel's main job.
 ON_KERNEL8 := $(patsubst %,tests/cad/test_%.py,kernel_agreement adapters bad_files loose_shells machine_bodies) \
-              tests/job/test_exporting.py
+              tests/job/test_exporting.py tests/test_wheel.py::test_the_demo_does_the_main_job_from_the_wheel
 
 $(KERNEL8)/.installed: setup.cfg pyproject.toml
 	@test -x $(KERNEL8)/bin/python || $(PYTHON) -m venv $(KERNEL8)
@@ -55,9 +63,21 @@ test-all: lint
 bench: setup
 	$(BIN)/python -m benchmarks
 
+# The manual as a site in out/site; what it takes is installed when it is asked for.
+SITE := .venv-site
+
+$(SITE)/.installed: resources/site/requirements.txt
+	@test -x $(SITE)/bin/python || $(PYTHON) -m venv $(SITE)
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
+
+site: $(SITE)/.installed
+	rm -rf out/site
+	$(SITE)/bin/sphinx-build -q -E -W --keep-going -d out/site-read -c resources/site resources/manual out/site
+
 docs: setup
 	$(BIN)/python resources/manual/figures.py
 
 clean:
-	rm -rf out build core/*.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache workbench/.import_linter_cache
+	rm -rf out build dist core/*.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache workbench/.import_linter_cache
 	find core tests benchmarks examples -name __pycache__ -prune -exec rm -rf {} +

@@ -1,12 +1,17 @@
-"""The tour through FreeCAD names what there is: pictures, commands, and what stands on the panels."""
+"""The manual does what it says: commands and code run; the tour through FreeCAD names what there is."""
 
 import ast
 import re
+import shutil
 import struct
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+
+from toolaxis.cli.main import main
 
 ROOT = Path(__file__).parent.parent
 MANUAL = ROOT / "resources" / "manual"
@@ -58,3 +63,44 @@ def test_every_command_that_is_named_is_in_the_menu() -> None:
 def test_every_word_of_a_panel_that_is_named_stands_there() -> None:
     named = set(re.findall(r"\*\*([^*]+)\*\*", TEXT))
     assert len(named) >= 10 and named <= words() | OTHERS, named - words()
+
+
+def blocks(page: str, language: str) -> list[str]:
+    text = (MANUAL / page).read_text(encoding="utf-8")
+    return [code for name, code in re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+            if name == language]
+
+
+def test_the_first_part_is_machined_as_the_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its commands one after the other, each of which ends with exit code 0, beside the part that the demo writes."""
+    pytest.importorskip("OCP")
+    commands = [line.split()[1:] for block in blocks("first-part.md", "") for line in block.splitlines()]
+    assert commands[0] == ["demo", "first"]  # tests/test_wheel.py runs it, from the wheel
+    assert [words[0] for words in commands[1:]] == ["inspect", "plan", "verify", "post", "report"]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "first").mkdir()
+    shutil.copy(ROOT / "examples" / "dish.step", tmp_path / "first" / "dish.step")
+    for words in commands[1:]:
+        assert main([*words, "--no-pictures"] if words[0] in ("plan", "verify") else words) == 0, words
+    named = set(re.findall(r"`(mine/[\w./-]+)`", (MANUAL / "first-part.md").read_text(encoding="utf-8")))
+    assert named and all((tmp_path / name).is_file() for name in named)
+    assert (tmp_path / "mine" / "report.html").is_file()
+
+
+def test_the_code_of_the_page_on_python_runs() -> None:
+    code = blocks("python.md", "python")
+    assert len(code) == 3
+    done = subprocess.run([sys.executable, "-W", "error", "-c", "\n".join(code)], cwd=ROOT, capture_output=True,
+                          text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_targets_and_extras_of_the_page_on_installing_are_there() -> None:
+    text = (MANUAL / "install.md").read_text(encoding="utf-8")
+    for target in sorted(set(re.findall(r"^make (\w+)$|`make (\w+)`", text, re.MULTILINE))):
+        subprocess.run(["make", "-n", *filter(None, target)], cwd=ROOT, check=True, capture_output=True)
+    extras = (ROOT / "setup.cfg").read_text(encoding="utf-8").split("[options.extras_require]")[1]
+    for name in re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", text, re.MULTILINE))):
+        assert re.search(rf"^{name} =", extras, re.MULTILINE), name
+    version = re.search(r"^version = (.+)$", (ROOT / "setup.cfg").read_text(encoding="utf-8"), re.MULTILINE)
+    assert version is not None and f"toolaxis-{version[1]}-py3-none-any.whl" in text

@@ -29,12 +29,20 @@ def test_make_knows_the_targets_and_the_demo_runs_the_command() -> None:
     assert "toolaxis plan examples/freeform.step" in dry and "toolaxis verify out/demo" in dry
 
 
+def test_the_wheel_that_is_installed_is_the_one_that_make_builds() -> None:
+    (wheel,) = re.findall(r"^pip install '(dist/[^'\[]+)\[cadquery\]'$", TEXT, re.MULTILINE)
+    dry = subprocess.run(["make", "-n", "wheel"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    version = re.search(r"^version = (.+)$", (ROOT / "setup.cfg").read_text(encoding="utf-8"), re.MULTILINE)
+    assert version is not None and wheel == f"dist/toolaxis-{version[1]}-py3-none-any.whl" and "dist" in dry
+
+
 def commands() -> list[str]:
     return [line for block in blocks("") for line in block.splitlines() if line.startswith("toolaxis ")]
 
 
 def test_every_command_runs(tmp_path: Path) -> None:
-    found = commands()
+    assert commands()[0] == "toolaxis demo"  # tests/test_wheel.py runs it, from the wheel
+    found = commands()[1:]
     assert [line.split()[1] for line in found] == ["inspect", "plan", "verify", "post", "report"]
     for line in found:
         words = [str(ROOT / word) if word.startswith("examples/") else word for word in line.split()[1:]]
@@ -81,7 +89,7 @@ def test_the_readme_is_read_in_five_minutes() -> None:
 
 
 def helped() -> dict[str, str]:
-    names = ("inspect", "plan", "verify", "post", "report", "export", "reschedule", "batch")
+    names = ("inspect", "plan", "verify", "post", "report", "export", "reschedule", "batch", "demo")
     return {name: subprocess.run([sys.executable, "-m", "toolaxis.cli.main", name, "--help"], capture_output=True,
                                  text=True, check=True).stdout for name in names}
 

@@ -11,7 +11,7 @@ def find_files(kind: str, *suffixes: str) -> dict[str, Path]:
     Parameters
     ----------
     kind : str
-        Name of the folder: "tools", "racks" or "machines".
+        Name of the folder: "tools", "racks", "machines" or "examples".
     *suffixes : str
         Endings that count, such as ".toml".
 
@@ -23,10 +23,21 @@ def find_files(kind: str, *suffixes: str) -> dict[str, Path]:
     """
     own = os.environ.get(f"TOOLAXIS_{kind.upper()}")
     folders = [Path(own)] if own else []
-    folders += [Path(__file__).resolve().parents[2] / "resources" / kind,
-                Path(sys.prefix) / "share" / "toolaxis" / kind]
+    folders += [folder / kind for folder in _folders(Path(__file__).resolve().parent)]
     found: dict[str, Path] = {}
     for folder in folders:
         for path in sorted(path for suffix in suffixes for path in folder.glob(f"*{suffix}")):
             found.setdefault(path.stem, path)
     return found
+
+
+def _folders(package: Path) -> list[Path]:
+    """Where the folders of a package's files may stand: in its clone, or where pip puts them.
+
+    pip puts them below the prefix of Python, of the user (``--user``) or of a folder (``--target``): the package is one
+    to four folders below each.
+    """
+    clone, prefix = package.parents[1], Path(sys.prefix)
+    if (clone / "resources").is_dir():
+        return [clone / "resources", clone, prefix / "share" / "toolaxis"]
+    return [above / "share" / "toolaxis" for above in [*package.parents[:4], prefix]]

@@ -17,7 +17,7 @@ pytest.importorskip("OCP")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MADE = {"01_freeform": ["freeform"], "02_saddle": ["saddle"], "03_trimmed": ["trimmed"],
         "04_hyperbolic_paraboloid": ["hyperbolic_paraboloid", "hyperbolic_paraboloid_rules"],
-        "05_manta": ["manta"], "06_biquintic": ["biquintic"]}
+        "05_manta": ["manta"], "06_biquintic": ["biquintic"], "15_dish": ["dish"]}
 NAMES = [name for names in MADE.values() for name in names]
 
 
@@ -44,7 +44,8 @@ def grid(n=101):
 
 
 def test_every_script_is_known():
-    assert sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py") if path.stem < "07") == sorted(MADE)
+    assert sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py") if path.stem < "07"
+                  or path.stem in MADE) == sorted(MADE)
 
 
 @pytest.mark.parametrize("script", MADE)
@@ -103,6 +104,14 @@ def test_the_freeform_patch_is_mixed_and_gentle(parts):
 def test_the_saddle_is_its_formula(parts):
     p = parts["saddle"].face(1).evaluate(grid()).point
     assert p[:, 2] == pytest.approx(30 + p[:, 0] ** 2 / 180 - p[:, 1] ** 2 / 140, abs=1e-12)
+
+
+def test_the_dish_is_its_formula_and_hollow(parts):
+    face = parts["dish"].face(1)
+    p = face.evaluate(grid()).point
+    x, y = p[:, 0], p[:, 1]
+    assert p[:, 2] == pytest.approx(12 + x**2 / 110 + y**2 / 90 - x * y / 300, abs=1e-12)
+    assert 1 / face.curvature(grid()).k1.max() > 40 and face.curvature(grid()).k2.min() > 0
 
 
 def test_no_border_of_the_trimmed_patch_runs_along_an_iso_line(parts):

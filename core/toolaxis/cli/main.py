@@ -56,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
     _add_report(commands)
     _add_export(commands)
     _add_batch(commands)
+    _add_demo(commands)
     return top
 
 
@@ -314,6 +315,18 @@ def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
                      help="dask.distributed scheduler, such as tcp://host:8786, whose workers take the jobs")
     sub.add_argument("--json", action="store_true", help="machine-readable summary on stdout")
     sub.set_defaults(module="toolaxis.cli.batch")
+
+
+def _add_demo(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    sub = commands.add_parser("demo", help="plan, verify and post an example part in a new folder",
+                              description="Write an example part into a new folder, plan it with the general rack on a "
+                                          "machine of the library, verify the plan, and write programs and a page. "
+                                          "Exit code 1 where the plan fails.")
+    sub.add_argument("folder", metavar="DIR", nargs="?", default="toolaxis-demo",
+                     help="folder to make (default: toolaxis-demo)")
+    sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
+    sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    sub.set_defaults(module="toolaxis.cli.demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
