@@ -211,6 +211,27 @@ def test_what_no_tool_reaches_stays_open_and_the_plan_incomplete() -> None:
     assert 0.5 * (found.area - found.machined) < found.unreachable == sum(op.unreachable for op in made.operations)
 
 
+def turned_away() -> Part:
+    """Two gentle sheets whose material is above them, faces 1 and 2, and one whose material is below, face 3."""
+    def sheet(x0: float, half: float, flip: bool) -> ta.Face:
+        x, y = np.meshgrid(np.linspace(-half, half, 4), np.linspace(-half, half, 4), indexing="ij")
+        return ta.Face.from_bspline(np.stack([x0 + x, y, 0.002 * x**2], axis=-1), flip=flip)
+
+    return Part.from_faces([sheet(0, 12, True), sheet(200, 10, True), sheet(400, 12, False)])
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_faces_that_no_tool_reaches_are_refused_before_any_search(workers: int) -> None:
+    made = ta.plan(turned_away(), TOOLS, SCALLOP, limits=UP, workers=workers)
+    by_face = {op.face.number: op for op in made.operations}
+    assert [number for number, op in sorted(by_face.items()) if op.done] == [3]
+    for number in (1, 2):
+        op = by_face[number]
+        assert op.orientation.outcome == "infeasible" and op.unreachable == pytest.approx(op.face.area, rel=1e-6)
+        why, = op.orientation.reasons
+        assert why.startswith("infeasible: no tool of the rack reaches it with any axis, proven for 100.0 %")
+
+
 def test_stopped_between_tools_it_keeps_what_is_finished() -> None:
     seen: list[str] = []
     stopping = Progress(lambda stage, done, total: seen.append(stage), lambda: any("Ball D3" in one for one in seen))

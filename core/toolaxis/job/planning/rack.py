@@ -23,11 +23,11 @@ from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import CHANGE_SECONDS, LEFT_OPEN, Plan
 from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import ToolChain, choose_tools
 from toolaxis.shape.face import Face
 from toolaxis.skin.alike import AlikeFace, find_alike_faces
 from toolaxis.skin.join import take_apart
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -167,18 +167,34 @@ class RackPlanner:
         self._used = set(choice.tools)
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
-        scene = scene_of(self.jobs[0])
-        for face, chain in zip(screened, chosen, strict=True):
+        self._wait_or_refuse(screened, chosen, copies, progress)
+
+    def _wait_or_refuse(self, faces: Sequence[Face], chains: Sequence[ToolChain],
+                        copies: Mapping[Face, tuple[AlikeFace, ...]], progress: Progress) -> None:
+        """Let whole faces wait for the first tools of their chains; refuse those that no tool reaches, where proven."""
+        without: list[Face] = []
+        for face, chain in zip(faces, chains, strict=True):
             if chain.tools:
                 self._waiting.append(_Waiting(face, (), chain.tools[0], in_pieces=_in_pieces(chain),
                                               axis=self._screen.first_axis(chain), copies=copies[face]))
-                continue
-            for one in (face, *(alike.face for alike in copies[face])):  # each stands among other surroundings
-                refused = self._refuse(one, scene)
-                if refused is not None:
-                    self._done.append(refused)
-                else:  # the screening sees no way, and the smallest tool tells why
-                    self._waiting.append(_Waiting(one, (), max(self._allowed)))
+            else:  # each of those that are alike stands among other surroundings
+                without += [face, *(alike.face for alike in copies[face])]
+        scene, asked = scene_of(self.jobs[0]), self.jobs[0].asked_area
+
+        def _prove(k: int, inner: Progress) -> float:
+            inner.report("proof of what is out of reach", k, len(without))
+            face = without[k]
+            return prove_unreachable(face, self.jobs, scene, face.area / (asked or face.area)).area
+
+        found = abreast(_prove, len(without), self.jobs[0].workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        for k, face in enumerate(without):
+            proven = found.results.get(k, 0.0)
+            if proven >= PROVEN * face.area:
+                self._done.append(_refuse(face, self.jobs[-1].tool, proven))
+            else:  # the screening sees no way, and the smallest tool tells why
+                self._waiting.append(_Waiting(face, (), max(self._allowed)))
 
     def _find_alike(self, faces: Sequence[Face]) -> dict[int, AlikeFace]:
         """Those of the faces that are alike others with the same allowance, by their places.
@@ -209,16 +225,6 @@ class RackPlanner:
                  "(--tool) or a coarser --scallop shorten it")
         part = self.jobs[0].part.with_warnings(words)
         self.jobs = [replace(job, part=part) for job in self.jobs]
-
-    def _refuse(self, face: Face, scene: ReachScene) -> Operation | None:
-        """The operation of a face that no tool reaches; None where that is not proven."""
-        proven = prove_unreachable(face, self.jobs, scene, face.area / (self.jobs[0].asked_area or face.area))
-        if proven.area < PROVEN * face.area:
-            return None
-        share = 100 * proven.area / face.area
-        why = f"infeasible: no tool of the rack reaches it with any axis, proven for {share:.1f} % of its area"
-        none = Orientation(None, outcome="infeasible", reasons=(why,))
-        return Operation(1, face, self.jobs[-1].tool, none, unreachable=proven.area)
 
     @property
     def _allowed(self) -> set[int]:
@@ -481,6 +487,14 @@ def _rest_of(op: Operation, origin: _Waiting) -> Face | None:
         return None
     loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops) if op.done else op.face.outline
     return origin.root.trimmed(loops) if loops else None
+
+
+def _refuse(face: Face, tool: Tool, proven: float) -> Operation:
+    """The operation of a face of which so much, mm^2, is proven to be out of reach of all tools."""
+    share = 100 * proven / face.area
+    why = f"infeasible: no tool of the rack reaches it with any axis, proven for {share:.1f} % of its area"
+    none = Orientation(None, outcome="infeasible", reasons=(why,))
+    return Operation(1, face, tool, none, unreachable=proven)
 
 
 def _in_pieces(chain: ToolChain) -> bool:
