@@ -57,6 +57,28 @@ def ring() -> Face:
     return Face.from_bspline(np.stack([x, y, height], axis=-1))
 
 
+def folded() -> Face:
+    """A strip along x, 20 mm long, on which the parameter runs back by 0.012 mm in one place: a fold with no height."""
+    x = np.linspace(0.0, 20.0, 60)
+    back = 0.9 * x[1]
+    x[30], x[31] = x[30] + back, x[31] - back
+    z = 0.01 * (x - 10) ** 2
+    rows = [np.column_stack([x, np.full(60, y), z]) for y in (0.0, 4.0)]
+    return Face.from_bspline(np.stack(rows, axis=1), (3, 1))
+
+
+@pytest.mark.parametrize("plainly", [False, True])
+def test_next_to_a_fold_of_a_face_its_points_lie_at_the_places_too(plainly: bool) -> None:
+    """Found on a fillet of another's part: points 0.1 mm beside their places, and passes that ran to and fro there."""
+    one = SeenFace(folded(), np.eye(3)[:2], np.zeros(3))
+    along = one.face.evaluate(np.column_stack([np.linspace(0, 1, 9001), np.full(9001, 0.5)])).point[:, 0]
+    back = np.flatnonzero(np.diff(along) < 0)
+    assert len(back) and along[back[0]] - along[back[-1] + 1] > 5e-3, "else it does not fold"
+    places = np.column_stack([np.linspace(9.0, 11.5, 10001), np.full(10001, 1.7)])
+    uv = one._find_plainly(places, one._begin(places)) if plainly else one.find(places)
+    assert np.abs(one.face.evaluate(uv).point[:, :2] - places).max() < 1e-9
+
+
 def test_the_kernel_finds_what_its_plain_twin_finds(united: Face) -> None:
     assert isinstance(united.surface, ViewSurface)
     seen = [*united.surface.seen, SeenFace(ring(), np.eye(3)[:2], np.zeros(3))]

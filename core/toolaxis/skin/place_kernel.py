@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 
 ITERATIONS, LAST, FAR = 30, 1e-8, 0.25
 """Newton steps, the step after which the next one is below rounding, and the longest step, as shares of the range."""
+BESIDE = (0.01, 0.03, 0.1)
+"""How far beside the first parameters the search begins again where it does not end, to either side in u and in v, as
+shares of the range: next to a fold of the surface, however small, the method goes to and fro."""
 PARALLEL = 1e-14
 """Share of their lengths' product below which the cross product of two directions tells that they are one."""
 
@@ -35,22 +38,10 @@ def _part(rows: Array, k: int, vector: Array) -> float:
 
 
 @jit
-def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> None:
-    """Parameters of a surface at one place of the plane, with the six vectors there.
-
-    Parameters
-    ----------
-    data : SurfaceData
-    frame : PlaceFrame
-    place : (2,) array
-    uv : (2,) array
-        Where to begin; receives the parameters.
-    d : (6, 3) array
-        Receives S, Su, Sv, Suu, Suv, Svv.
-    work : (6, 26) array
-        What is in it does not count.
-    """
+def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> float:
+    """Parameters from where ``uv`` is; how far from the place it ends, mm squared, and 0 where the steps do."""
     rows, origin, ends = frame
+    away = np.inf
     for _ in range(ITERATIONS):
         surface_derivatives(data, uv[0], uv[1], d, work)
         x = place[0] - (_part(rows, 0, d[0]) - _part(rows, 0, origin))
@@ -67,8 +58,42 @@ def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d:
         for k in range(2):
             if np.isfinite(ends[k, 2]):
                 uv[k] = ends[k, 0] + (uv[k] - ends[k, 0]) % ends[k, 2]
+        away = x * x + y * y
         if size <= LAST:
-            break
+            return 0.0
+    return away
+
+
+@jit
+def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> None:
+    """Parameters of a surface at one place of the plane, with the six vectors there.
+
+    Parameters
+    ----------
+    data : SurfaceData
+    frame : PlaceFrame
+    place : (2,) array
+    uv : (2,) array
+        Where to begin; receives the parameters.
+    d : (6, 3) array
+        Receives S, Su, Sv, Suu, Suv, Svv.
+    work : (6, 26) array
+        What is in it does not count.
+    """
+    u, v = uv[0], uv[1]
+    away = _search_place(data, frame, place, uv, d, work)
+    if away > 0.0:
+        best_u, best_v = uv[0], uv[1]
+        for number in range(4 * len(BESIDE)):
+            share = BESIDE[number // 4] if number % 2 else -BESIDE[number // 4]
+            uv[0] = u + (share * frame.ends[0, 1] if number % 4 < 2 else 0.0)
+            uv[1] = v + (share * frame.ends[1, 1] if number % 4 >= 2 else 0.0)
+            left = _search_place(data, frame, place, uv, d, work)
+            if left < away:
+                away, best_u, best_v = left, uv[0], uv[1]
+            if away == 0.0:
+                break
+        uv[0], uv[1] = best_u, best_v
     surface_derivatives(data, uv[0], uv[1], d, work)
 
 

@@ -13,7 +13,16 @@ from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
-from toolaxis.skin.place_kernel import FAR, ITERATIONS, LAST, PARALLEL, PlaceFrame, find_places, turn_into_plane
+from toolaxis.skin.place_kernel import (
+    BESIDE,
+    FAR,
+    ITERATIONS,
+    LAST,
+    PARALLEL,
+    PlaceFrame,
+    find_places,
+    turn_into_plane,
+)
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -174,19 +183,32 @@ class SeenFace:
 
     def _find_plainly(self, places: Array, uv: Array) -> Array:
         """The plain twin of `toolaxis.skin.place_kernel.find_places`."""
+        span = self.frame.ends[:, 1]
+        found, away = self._search_plainly(places, uv)
+        for share in BESIDE:
+            for beside in ((-share, 0.0), (share, 0.0), (0.0, -share), (0.0, share)):
+                rows = np.flatnonzero(away > 0)
+                other, left = self._search_plainly(places[rows], uv[rows] + beside * span)
+                better = left < away[rows]
+                found[rows[better]], away[rows[better]] = other[better], left[better]
+        return found
+
+    def _search_plainly(self, places: Array, begin: Array) -> tuple[Array, Array]:
+        """Parameters (n, 2), and how far from the places they end, mm squared, 0 where the steps do, (n,)."""
         low, span = self.frame.ends[:, 0], self.frame.ends[:, 1]
-        todo = np.arange(len(uv))
+        uv, away, todo = begin.copy(), np.zeros(len(begin)), np.arange(len(begin))
         for _ in range(ITERATIONS):
+            if not len(todo):
+                break
             d = self.face.evaluate(uv[todo])
             miss = places[todo] - self.project(d.point)
             move = _solve(d.su @ self.rows.T, d.sv @ self.rows.T, miss)
             size = (np.abs(move) / span).max(axis=1)
             move *= np.minimum(1.0, FAR / np.maximum(size, np.finfo(float).tiny))[:, None]
             uv[todo] = self._wrap(uv[todo] + move, low)
+            away[todo] = np.where(size > LAST, (miss**2).sum(axis=1), 0.0)
             todo = todo[size > LAST]
-            if not len(todo):
-                break
-        return uv
+        return uv, away
 
     def evaluate(self, places: Array) -> Derivatives:
         """The face's points at places of the plane, and their derivatives with these.
