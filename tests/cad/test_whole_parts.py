@@ -50,7 +50,8 @@ def main_face(part):
 
 
 def test_every_script_is_known():
-    assert sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py") if path.stem > "07") == sorted(MADE)
+    single = ("15_dish",)  # of one face, which test_examples.py looks at
+    assert sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py") if path.stem > "07") == sorted([*MADE, *single])
 
 
 @pytest.mark.parametrize("script", [

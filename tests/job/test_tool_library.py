@@ -80,7 +80,7 @@ def test_the_page_on_tools_does_what_it_says(tmp_path: Path) -> None:
     page = (ROOT / "resources" / "manual" / "tools.md").read_text(encoding="utf-8")
     block, = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     written(tmp_path, "shop.toml", block)
-    block, = re.findall(r"```csv\n(.*?)```", page, re.DOTALL)
+    block, = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
     table = written(tmp_path, "table.csv", block)
     assert [tool.name for tool in load_tools(table)] == ["torus:12.7x1.524", "ball:8"]
     code, = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
