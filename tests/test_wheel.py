@@ -18,6 +18,7 @@ _spec = spec_from_file_location("release", ROOT / "resources" / "release" / "rel
 assert _spec is not None and _spec.loader is not None
 release = module_from_spec(_spec)
 _spec.loader.exec_module(release)
+CLEAN = release.clean_environment()
 
 
 @pytest.fixture(scope="module")
@@ -94,14 +95,6 @@ def unpacked(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-OURS = ("PYTHON", "TOOLAXIS", "VIRTUAL")
-
-
-def clean() -> dict[str, str]:
-    """The environment variables of a shell that knows nothing of the clone."""
-    return {name: value for name, value in os.environ.items() if not name.startswith(OURS)}
-
-
 def share_kernels(source: Path, target: Path) -> None:
     """Copy the compiled kernels that the other package lacks, each list of them after the code that it names."""
     for suffix in ("nbc", "nbi"):
@@ -119,9 +112,9 @@ def share_kernels(source: Path, target: Path) -> None:
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A virtual environment with the wheel in it, and what it needs from this one, where the clone is not seen."""
     env = tmp_path_factory.mktemp("installed") / "env"
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(env)], check=True, env=clean())
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(env)], check=True, env=CLEAN)
     subprocess.run([sys.executable, "-m", "pip", "--python", str(env / "bin" / "python"), "install", "--quiet",
-                    "--no-deps", "--no-index", "--disable-pip-version-check", str(wheel)], check=True, env=clean())
+                    "--no-deps", "--no-index", "--disable-pip-version-check", str(wheel)], check=True, env=CLEAN)
     (site,) = (env / "lib").glob("python*/site-packages")
     # .pth files in the folder that is named here do not count, so the clone is not seen.
     (site / "needed.pth").write_text(sysconfig.get_path("purelib") + "\n")
@@ -131,9 +124,9 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_import_warns_of_nothing_and_what_is_needed_fits(installed: Path, tmp_path: Path) -> None:
     python = installed / "bin" / "python"
     where = subprocess.run([python, "-W", "error", "-c", "import toolaxis; print(toolaxis.__file__)"], cwd=tmp_path,
-                           env=clean(), capture_output=True, text=True, check=True).stdout
+                           env=CLEAN, capture_output=True, text=True, check=True).stdout
     assert where.startswith(str(installed))
-    done = subprocess.run([sys.executable, "-m", "pip", "--python", str(python), "check"], cwd=tmp_path, env=clean(),
+    done = subprocess.run([sys.executable, "-m", "pip", "--python", str(python), "check"], cwd=tmp_path, env=CLEAN,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
@@ -145,7 +138,7 @@ def test_the_demo_does_the_main_job_from_the_wheel(installed: Path, tmp_path: Pa
     (package,) = (installed / "lib").glob("python*/site-packages/toolaxis")
     share_kernels(ROOT / "core" / "toolaxis", package)
     done = subprocess.run([installed / "bin" / "toolaxis", "demo", "made", "--no-pictures", "--json"], cwd=tmp_path,
-                          env=clean(), capture_output=True, text=True)
+                          env=CLEAN, capture_output=True, text=True)
     share_kernels(package, ROOT / "core" / "toolaxis")
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     told = json.loads(done.stdout)
@@ -191,19 +184,19 @@ def test_mypy_finds_the_types_in_a_script_that_uses_the_wheel(unpacked: Path, tm
 @pytest.mark.long  # it downloads and installs all that the wheel needs: minutes, and hundreds of MB
 def test_the_main_job_runs_from_the_wheel_in_a_clean_environment(wheel: Path, tmp_path: Path) -> None:
     """What an installed toolaxis plans, judges, posts, reports and exports, away from the clone."""
-    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "env")], check=True, env=clean())
+    subprocess.run([sys.executable, "-m", "venv", str(tmp_path / "env")], check=True, env=CLEAN)
     python, command = tmp_path / "env" / "bin" / "python", tmp_path / "env" / "bin" / "toolaxis"
     subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check",
-                    f"{wheel}[build123d,report,mesh]"], check=True, cwd=tmp_path, env=clean())
+                    f"{wheel}[build123d,report,mesh]"], check=True, cwd=tmp_path, env=CLEAN)
     shutil.copy(ROOT / "examples" / "saddle.step", tmp_path / "part.step")
     for words in ("inspect part.step", "plan part.step --tool torus-12x1 --scallop 0.05 --out made", "verify made",
                   "post made --dialect fanuc --machine mikron-ucp-710", "report made", "export made",
                   "export made --out made/plan.glb --colour scallop"):
-        done = subprocess.run([command, *words.split()], cwd=tmp_path, env=clean(), capture_output=True, text=True)
+        done = subprocess.run([command, *words.split()], cwd=tmp_path, env=CLEAN, capture_output=True, text=True)
         assert done.returncode == 0, f"{words}\n{done.stdout}\n{done.stderr}"
     names = {path.name for path in (tmp_path / "made").iterdir()}
     assert {"plan.json", "verdict.json", "program-fanuc.nc", "report.html", "plan.step", "plan.glb"} <= names
-    where = subprocess.run([python, "-c", "import toolaxis; print(toolaxis.__file__)"], cwd=tmp_path, env=clean(),
+    where = subprocess.run([python, "-c", "import toolaxis; print(toolaxis.__file__)"], cwd=tmp_path, env=CLEAN,
                            capture_output=True, text=True, check=True).stdout
     assert where.startswith(str(tmp_path))
 

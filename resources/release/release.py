@@ -35,6 +35,11 @@ SPACE = "{https://wiki.freecad.org/Package_Metadata}"
 OURS = ("PYTHON", "TOOLAXIS", "VIRTUAL")
 
 
+def clean_environment() -> dict[str, str]:
+    """The environment variables of a shell that knows nothing of the clone."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(OURS)}
+
+
 class NotReady(SystemExit):
     """Something that keeps the release back, in one sentence."""
 
@@ -172,7 +177,7 @@ def write_entries(out: Path, source: Path) -> list[Path]:
 
 def try_wheel(wheel: Path, kernel: str, python: str) -> str:
     """Install the wheel with a CAD kernel in a clean environment, and do its main job there; what it took."""
-    clean = {name: value for name, value in os.environ.items() if not name.startswith(OURS)}
+    clean = clean_environment()
     with tempfile.TemporaryDirectory() as folder:
         env, work = Path(folder) / "env", Path(folder) / "empty"
         work.mkdir()

@@ -39,7 +39,8 @@ def _part(rows: Array, k: int, vector: Array) -> float:
 
 @jit
 def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> float:
-    """Parameters from where ``uv`` is; how far from the place it ends, mm squared, and 0 where the steps do."""
+    """Newton's method from the parameters in ``uv``; the square of how far from the place it gave up, mm^2, 0 where it
+    ended."""
     rows, origin, ends = frame
     away = np.inf
     for _ in range(ITERATIONS):
@@ -74,25 +75,24 @@ def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d:
     frame : PlaceFrame
     place : (2,) array
     uv : (2,) array
-        Where to begin; receives the parameters.
+        Where to begin; receives the parameters, of the nearest point that was found where no search ends.
     d : (6, 3) array
         Receives S, Su, Sv, Suu, Suv, Svv.
     work : (6, 26) array
         What is in it does not count.
     """
-    u, v = uv[0], uv[1]
+    u, v, ends = uv[0], uv[1], frame.ends
     away = _search_place(data, frame, place, uv, d, work)
     if away > 0.0:
         best_u, best_v = uv[0], uv[1]
-        for number in range(4 * len(BESIDE)):
-            share = BESIDE[number // 4] if number % 2 else -BESIDE[number // 4]
-            uv[0] = u + (share * frame.ends[0, 1] if number % 4 < 2 else 0.0)
-            uv[1] = v + (share * frame.ends[1, 1] if number % 4 >= 2 else 0.0)
-            left = _search_place(data, frame, place, uv, d, work)
-            if left < away:
-                away, best_u, best_v = left, uv[0], uv[1]
-            if away == 0.0:
-                break
+        for share in BESIDE:
+            for in_u, in_v in ((-share, 0.0), (share, 0.0), (0.0, -share), (0.0, share)):
+                if away == 0.0:
+                    break
+                uv[0], uv[1] = u + in_u * ends[0, 1], v + in_v * ends[1, 1]
+                left = _search_place(data, frame, place, uv, d, work)
+                if left < away:
+                    away, best_u, best_v = left, uv[0], uv[1]
         uv[0], uv[1] = best_u, best_v
     surface_derivatives(data, uv[0], uv[1], d, work)
 

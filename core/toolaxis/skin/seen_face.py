@@ -194,7 +194,8 @@ class SeenFace:
         return found
 
     def _search_plainly(self, places: Array, begin: Array) -> tuple[Array, Array]:
-        """Parameters (n, 2), and how far from the places they end, mm squared, 0 where the steps do, (n,)."""
+        """The plain twin of the search from one place: parameters (n, 2), and the squares of how far from the places it
+        gave up, mm^2, 0 where it ended, (n,)."""
         low, span = self.frame.ends[:, 0], self.frame.ends[:, 1]
         uv, away, todo = begin.copy(), np.zeros(len(begin)), np.arange(len(begin))
         for _ in range(ITERATIONS):
