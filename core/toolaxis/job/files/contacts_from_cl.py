@@ -14,7 +14,8 @@ from toolaxis.plan.plan import Plan
 
 Array = NDArray[np.float64]
 
-#: mm: a contact counts where the tip that follows from it is no farther from the one in the file.
+#: mm: a contact counts where the tip that follows from it is no farther from the one in the file, besides what tips are
+#: set deeper on hollow stretches.
 _NEAR = 1e-4
 #: Widths are looked at so far apart at most, as a share of the sub-surface's diagonal.
 _APART = 0.015
@@ -48,7 +49,7 @@ def _touching(plan: Plan, op: Operation, path: ToolPath) -> tuple[NDArray[np.int
     cutting = path.kind == Motion.CUT
     rows = np.flatnonzero(cutting | np.append(cutting[1:], False))
     found = contacts_of(op.face, op.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance_of(op.face))
-    near = found.off <= _NEAR
+    near = found.off <= _NEAR + plan.inputs.tolerance.chord_for(plan.inputs.scallop)
     return rows[near], found.uv[near]
 
 

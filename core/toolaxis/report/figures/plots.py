@@ -163,6 +163,8 @@ def _over(canvas: Canvas, run: Array, inside: bool) -> list[Array]:
 def cutting_lines(path: ToolPath) -> list[Array]:
     """Contact points of every uninterrupted cutting motion, each (m, 3), the one at which it begins included.
 
+    Places whose contact was not found again in a file, where the tip stands in its place, are left out.
+
     Parameters
     ----------
     path : ToolPath
@@ -170,7 +172,9 @@ def cutting_lines(path: ToolPath) -> list[Array]:
     cutting = path.kind == Motion.CUT
     starts = np.flatnonzero(cutting & ~np.concatenate([[False], cutting[:-1]]))
     ends = np.flatnonzero(cutting & ~np.concatenate([cutting[1:], [False]]))
-    return [path.cc[max(a - 1, 0):b + 1] for a, b in zip(starts, ends, strict=True)]
+    known = (path.cc != path.cl).any(axis=1)
+    lines = [slice(max(a - 1, 0), b + 1) for a, b in zip(starts, ends, strict=True)]
+    return [path.cc[line][known[line]] if known[line].any() else path.cc[line] for line in lines]
 
 
 def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -> None:
