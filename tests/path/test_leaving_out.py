@@ -1,14 +1,18 @@
 """Passes without motions that a proof refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.path import traced_pieces
 from toolaxis.path.cl_points import trace
 from toolaxis.path.leaving_out import leave_out
 from toolaxis.path.parametrization import Cut, IsoChart
 from toolaxis.path.pass_layout import lay_out
+from toolaxis.path.traced_pieces import TracedPieces
 
 CHORD = 0.002
 
@@ -45,3 +49,18 @@ def test_links_are_not_left_out(laid) -> None:
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
     same, ends = leave_out(placed, path, links, CHORD)
     assert same is placed and not len(ends)
+
+
+def test_pieces_that_stay_are_not_traced_again_and_are_as_if_they_were(laid, monkeypatch: pytest.MonkeyPatch) -> None:
+    placed, path = laid
+    chosen = np.flatnonzero(path.kind[1:] == Motion.CUT)[100:102]
+    fewer, _ = leave_out(placed, path, chosen, CHORD)
+    follow, asked = traced_pieces.follow, []
+    monkeypatch.setattr(traced_pieces, "follow", lambda *given: asked.append(given[2]) or follow(*given))
+    made = trace(fewer, CHORD)
+    new = [row for row in fewer.pieces.tolist() if row not in placed.pieces.tolist()]
+    assert 0 < len(new) < len(fewer.pieces) and np.concatenate(asked).tolist() == new
+    afresh = trace(replace(fewer, traced=TracedPieces()), CHORD)
+    assert len(asked) == 2 and len(asked[1]) == len(fewer.pieces)
+    for name in ("cl", "cc", "kind"):
+        np.testing.assert_array_equal(getattr(made, name), getattr(afresh, name))

@@ -1,15 +1,12 @@
 """From places of passes to a tool path: order, direction, points and links."""
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
-from toolaxis.path.chord_tolerance import follow, rises
 from toolaxis.path.links import CuttingMove, Linking, link
-from toolaxis.path.parametrization import Chart, Cut, tip_points
+from toolaxis.path.parametrization import Chart, Cut
 from toolaxis.path.pass_layout import Layout
 
 Array = NDArray[np.float64]
@@ -63,14 +60,8 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     """
     if direction not in DIRECTIONS:
         raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
-    chart, cut = layout.chart, layout.cut
-    piece, along = follow(chart, cut, layout.pieces, chord)
-    steps = layout.pieces[piece, 2]
-    contact, tip, normal = tip_points(chart, cut, along, steps)
-    tip = tip - rises(chart, cut, steps, (piece, along), tip)[:, None] * normal
-    bounds = np.searchsorted(piece, np.arange(len(layout.pieces) + 1))
-    strokes = [CuttingMove(contact[a:b], tip[a:b], normal[a:b]) for a, b in pairwise(bounds)]
-    return link(_order_moves(strokes, layout, direction), cut.axis, linking or Linking(_crossing(layout, box)))
+    strokes = [one.move for one in layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)]
+    return link(_order_moves(strokes, layout, direction), layout.cut.axis, linking or Linking(_crossing(layout, box)))
 
 
 def _order_moves(strokes: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:

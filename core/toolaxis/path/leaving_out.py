@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
-from toolaxis.path.chord_tolerance import follow
-from toolaxis.path.parametrization import tip_points
 from toolaxis.path.pass_layout import Layout
 
 Array = NDArray[np.float64]
@@ -45,9 +43,10 @@ def leave_out(layout: Layout, path: ToolPath, motions: Index, chord: float) -> t
     ends = np.stack([path.cc[cutting], path.cc[cutting + 1]], axis=1)
     if not len(cutting):
         return layout, ends
-    piece, along = follow(layout.chart, layout.cut, layout.pieces, chord)
-    contact, _, _ = tip_points(layout.chart, layout.cut, along, layout.pieces[piece, 2])
-    near = cKDTree(contact)
+    traced = layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)
+    piece = np.repeat(np.arange(len(traced)), [len(one.along) for one in traced])
+    along = np.concatenate([one.along for one in traced])
+    near = cKDTree(np.concatenate([one.move.contact for one in traced]))
     gaps: dict[int, list[tuple[float, float]]] = {}
     for pair in ends:
         starts, stops = near.query_ball_point(pair, _SAME)

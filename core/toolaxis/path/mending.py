@@ -269,4 +269,4 @@ def _with(placed: Layout, further: list[Array]) -> Layout:
     pieces = np.concatenate([placed.pieces, *further])
     rows = np.lexsort((pieces[:, 0], place[owner]))
     made = Spacing(steps[order], spacing.unused, spacing.lines, np.concatenate([spacing.halves, halves])[order])
-    return Layout(chart, placed.cut, made, pieces[rows], place[owner][rows])
+    return Layout(chart, placed.cut, made, pieces[rows], place[owner][rows], placed.traced)

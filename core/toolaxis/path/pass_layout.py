@@ -1,7 +1,7 @@
 """Where each pass begins and ends: over the face, past its free borders, around holes and what may not be touched."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.path.overrun import overrun_length
 from toolaxis.path.parametrization import Chart, Cut, columns, extents, tip_points
 from toolaxis.path.step_over import PITCH, Spacing, lines, space
+from toolaxis.path.traced_pieces import TracedPieces
 from toolaxis.path.trim_intervals import Intervals, filter_intervals, merge_intervals, table
 from toolaxis.progress import NO_PROGRESS, Progress
 
@@ -42,6 +43,8 @@ class Layout:
         along0, along1, step of each piece, sorted by pass, then along.
     owner : (m,) array of int
         Pass of each piece.
+    traced : TracedPieces
+        Pieces that were traced, of this layout and of those that it was made from.
     """
 
     chart: Chart
@@ -49,6 +52,7 @@ class Layout:
     spacing: Spacing
     pieces: Array
     owner: NDArray[np.intp]
+    traced: TracedPieces = field(default_factory=TracedPieces)
 
     @property
     def steps(self) -> Array:

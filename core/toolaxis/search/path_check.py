@@ -98,7 +98,7 @@ class ProvenMotions:
         found = np.searchsorted(self._keys, keys)
         there = np.flatnonzero(found < len(self._keys))
         there = there[(self._rows[found[there]] == rows[there]).all(axis=1)]
-        new = np.setdiff1d(np.arange(len(rows)), there)
+        new = _others(len(rows), there)
         found[new] = len(self._keys) + np.arange(len(new))
         every = np.concatenate([self._keys, keys[new]])
         order = np.argsort(every, kind="stable")
@@ -125,9 +125,9 @@ class ProvenMotions:
         new = self._unknown(places, number)
         if not len(new):
             return new
-        blocked = new[ask(new)]
-        self._proven[places[np.setdiff1d(new, blocked)]] |= 1 << number
-        return blocked
+        some = ask(new)
+        self._proven[places[new[_others(len(new), some)]]] |= 1 << number
+        return new[some]
 
     def count_new(self, places: NDArray[np.intp]) -> int:
         """How many motions no figures are known of.
@@ -160,6 +160,13 @@ class ProvenMotions:
     def _unknown(self, places: NDArray[np.intp], bit: int) -> NDArray[np.intp]:
         """Rows of the motions of which something is not known."""
         return np.flatnonzero((self._proven[places] >> bit) & 1 == 0)
+
+
+def _others(count: int, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """All rows up to a count but some; there may be millions."""
+    rest = np.ones(count, dtype=bool)
+    rest[rows] = False
+    return np.flatnonzero(rest)
 
 
 def _keys_of(rows: Array) -> NDArray[np.uint64]:
@@ -271,7 +278,7 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
         Stock left on the group, mm.
     """
     spread = np.arange(0, len(moves), _STRIDE)
-    order = np.concatenate([spread, np.setdiff1d(np.arange(len(moves)), spread)])
+    order = np.concatenate([spread, _others(len(moves), spread)])
     limit, cutter = float(group.required[0]), _only(group, (0,))
     nearest = allowance + 2 * FINE
     for first in range(0, len(order), _BATCH):
