@@ -17,6 +17,7 @@ from toolaxis.contact.clearance.surroundings import IGNORED, Surroundings
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.shape.adjacency import Edge
+from toolaxis.shape.bounding.bounding_tree import forest
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
@@ -229,6 +230,29 @@ def test_plain_twin_says_the_same(monkeypatch):
     assert np.abs(one[0] - other[0])[one[0] > 0].max() <= RESOLUTION
     assert (one[1] == other[1]).all()
     assert 0 < one[1].mean() < 1
+
+
+def test_motions_close_together_are_told_as_each_by_itself():
+    rng, count = np.random.default_rng(8), 30
+    tree = forest([_wavy(2), _wall(14, -5, 60)])
+    begin = rng.uniform([-12, -12, 0], [12, 12, 9], (40, 3))
+    tips = begin[:, None] + np.cumsum(rng.normal(0, 0.1, (40, count, 3)), axis=1)
+    axes = np.repeat(unit(UP + 0.2 * rng.standard_normal((40, 3))), count, axis=0)
+    ways = np.where(rng.random((40, 1, 1)) < 0.5, 0.0, rng.normal(0, 0.8, tips.shape))
+    moves = np.stack([tips.reshape(-1, 3), ways.reshape(-1, 3), axes], axis=1)
+    required, limit = np.array([[0.3, 0.5, 1.0], [0.1, 0.5, 1.0]]), 2.0
+
+    decided = distances.keeps_limits(tree, TOOL, moves, required)
+    bounded = distances.lower_bounds(tree, TOOL, moves, limit, RESOLUTION)
+    alone = [(distances.keeps_limits(tree, TOOL, moves[[i]], required),
+              distances.lower_bounds(tree, TOOL, moves[[i]], limit, RESOLUTION)) for i in range(len(moves))]
+    blocked = np.array([one.blocked[0] >= 0 for one, _ in alone])
+    assert (blocked == (decided.blocked >= 0)).all() and 0.2 < blocked.mean() < 0.8
+    lower = np.concatenate([one.lower for _, one in alone])
+    clear = lower > -0.1
+    assert np.abs(lower - bounded.lower)[clear].max() <= RESOLUTION
+    assert (lower < limit).mean() > 0.3
+    assert decided.looked.sum() < 0.5 * sum(one.looked[0] for one, _ in alone)
 
 
 def test_bad_input():

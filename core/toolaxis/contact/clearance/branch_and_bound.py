@@ -22,6 +22,9 @@ BUDGET = 100_000
 DECIDED = 1e-6
 DEPTH = 2048
 TREE, WHOLE, CUT = 0, 1, 2
+#: Motions that follow each other are looked at together first: how many at least and at most, how far the ball around
+#: them may reach, as a share of the tool's greatest radius, and nodes of the tree that may stay open for them.
+_FEWEST, _MOST, _REACH, _OPEN = 3, 32, 0.2, 128
 HALVE_U, HALVE_V, HALVE_MOTION, BRANCH, START = 0, 1, 2, 3, 4
 
 # pieces (k, 8); limits (faces + 1, 3): what each component must keep, -inf where it is not asked, the last row for
@@ -36,6 +39,10 @@ Stack: TypeAlias = tuple[Array, Indices]
 # found (5, 3): least phi seen and least bound given up, by component, and the nearest points; tags (5,): faces, then
 # the component found too near (-1: none), and cells looked at
 State: TypeAlias = tuple[Array, Indices]
+# nodes and open pieces (n, 2) that count for motions close together, and the lowest of their bounds (n,)
+Bunch: TypeAlias = tuple[Indices, Array]
+# region, derivatives, spline scratch; items, tags; found, tags of the answer; nodes, bounds of a bunch
+Room: TypeAlias = tuple[Array, Array, Array, Array, Indices, Array, Indices, Indices, Array]
 # tip half-way, half of its way (zero for a standing tool), axis
 Motion: TypeAlias = tuple[Triple, Triple, Triple]
 # q, a, b; e, radius, and what of e no splitting removes; the second-order form
@@ -326,20 +333,133 @@ def exchange(stack: Stack, low: int) -> None:
 
 
 @jit_fma_inline
-def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work: Work, state: State) -> None:
+def find_bunch(motions: Array, first: int, most: float) -> tuple[int, Triple, float]:
+    """Motions from one on that stay together: where the next begin, and the ball around their tips.
+
+    Parameters
+    ----------
+    motions : (n, 3, 3) array
+    first : int
+    most : float
+        How far the ball may reach, mm.
+    """
+    low = high = row(motions[first], 0, 0)
+    axis = row(motions[first], 2, 0)
+    last, reach = first, 0.0
+    while last < motions.shape[0] and last - first < _MOST:
+        (x, y, z), (a, b, c) = row(motions[last], 0, 0), row(motions[last], 1, 0)
+        a, b, c = abs(a), abs(b), abs(c)
+        lower = (min(low[0], x - a), min(low[1], y - b), min(low[2], z - c))
+        upper = (max(high[0], x + a), max(high[1], y + b), max(high[2], z + c))
+        across = (upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2])
+        wider = np.sqrt(dot(across, across)) / 2.0
+        if wider > most or row(motions[last], 2, 0) != axis:
+            break
+        low, high, reach, last = lower, upper, wider, last + 1
+    return max(last, first + 1), ((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0), reach
+
+
+@jit_fma_inline
+def gather_open(data: ForestData, tool: ToolData, ball: tuple[Triple, float, Triple], cutoff: Array, stack: Stack,
+                bunch: Bunch) -> tuple[int, int]:
+    """The nodes of the tree that count for any motion in a ball, as many as there are, and how many were looked at.
+
+    A distance changes by no more than the tip moves: what is as far from the tool in the middle of the ball as is asked
+    for, and its radius farther, counts for none.
+
+    Parameters
+    ----------
+    data, tool, stack
+        See the aliases.
+    ball : tuple
+        Middle, radius in mm, and the axis of all motions.
+    cutoff : (3,) array
+        By component the value from which distances are not told apart, mm.
+    bunch : tuple
+        Receives the nodes, the nearest last; where there are more than it holds, their number is -1.
+    """
+    pieces, limits, (low, wide, resolution), _ = tool
+    shape, link = data[0], data[1]
+    tags, (tip, reach, axis), (nodes, keys) = stack[1], ball, bunch
+    tags[0, 0], tags[0, 2] = 0, (1 << pieces.shape[0]) - 1
+    depth, count, looked = 1, 0, 0
+    while depth > 0:
+        depth -= 1
+        node, mask, left, key = tags[depth, 0], tags[depth, 2], 0, np.inf
+        q, a, b, (e, radius, _), bend = tree_cell(shape, node)
+        w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
+        frame, view = (w, axis, a, b, (0.0, 0.0, 0.0)), look(w, axis)
+        outside = max(low - view[1], view[0] - wide) - radius
+        looked += 1
+        for p in range(pieces.shape[0]):
+            k = int(pieces[p, 7])
+            wanted = limits[link[node, 2], k]
+            if not mask & (1 << p) or wanted == -np.inf:
+                continue
+            wanted = (cutoff[k] if resolution >= 0.0 else wanted) + reach
+            if outside >= wanted:
+                continue
+            piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
+            lower = bound_over_cell(frame, piece, view, bend, (e, radius, wanted))[0]
+            if lower < wanted:
+                left |= 1 << p
+                key = min(key, lower - reach)
+        if left == 0:
+            continue
+        if link[node, 3] < 0 and radius > reach:
+            for side in range(2):
+                if link[node, side] >= 0:
+                    tags[depth, 0], tags[depth, 2] = link[node, side], left
+                    depth += 1
+            continue
+        if count == nodes.shape[0]:
+            return -1, looked
+        place = count
+        while place > 0 and keys[place - 1] < key:
+            nodes[place, 0], nodes[place, 1], keys[place] = nodes[place - 1, 0], nodes[place - 1, 1], keys[place - 1]
+            place -= 1
+        nodes[place, 0], nodes[place, 1], keys[place] = node, left, key
+        count += 1
+    return count, looked
+
+
+@jit_fma_inline
+def begin(pieces: int, bunch: Bunch, count: int, stack: Stack) -> int:
+    """Put on the stack what there is to look at, the nearest on top; its depth.
+
+    Parameters
+    ----------
+    pieces : int
+        How many the tool has.
+    bunch, stack
+        See the aliases.
+    count : int
+        Of the nodes in the bunch; where it is -1, all of the tree is looked at.
+    """
+    (items, tags), (nodes, keys) = stack, bunch
+    for k in range(max(count, 1)):
+        items[k, 4], items[k, 5], items[k, 6] = 0.0, 1.0, -np.inf
+        tags[k, 0], tags[k, 1], tags[k, 2], tags[k, 3] = 0, TREE, (1 << pieces) - 1, START
+        if count >= 0:
+            tags[k, 0], tags[k, 2], items[k, 6] = nodes[k, 0], nodes[k, 1], keys[k]
+    return count if count >= 0 else 1
+
+
+@jit_fma_inline
+def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, depth: int, work: Work,
+            state: State) -> None:
     """Bound the least distance of the tool's components on one motion, or decide whether they keep their limits.
 
     Parameters
     ----------
     data, tool, motion, stack, work
         See the aliases.
+    depth : int
+        Of the stack, from `begin`.
     state : tuple
         Starting values; receives the answer.
     """
     items, tags = stack
-    items[0, 4], items[0, 5], items[0, 6] = 0.0, 1.0, -np.inf
-    tags[0, 0], tags[0, 1], tags[0, 2], tags[0, 3] = 0, TREE, (1 << tool[0].shape[0]) - 1, START
-    depth = 1
     while depth > 0 and state[1][3] < 0:
         depth -= 1
         bottom, mask, across, key = depth, tags[depth, 2], tags[depth, 3], items[depth, 6]
@@ -359,7 +479,7 @@ def descend(data: ForestData, tool: ToolData, motion: Motion, stack: Stack, work
             exchange(stack, bottom)
 
 
-def scratch(most_edges: int) -> tuple[Array, Array, Array, Array, Indices, Array, Indices]:
+def scratch(most_edges: int) -> Room:
     """Arrays in which `descend_many` works.
 
     Parameters
@@ -368,12 +488,12 @@ def scratch(most_edges: int) -> tuple[Array, Array, Array, Array, Indices, Array
         Trim edges through a leaf at most, `Cells.most_edges`.
     """
     return (np.empty((2 * most_edges + 4, 2)), np.empty((6, 3)), np.empty((6, 26)), np.empty((DEPTH, 7)),
-            np.empty((DEPTH, 4), dtype=np.int64), np.empty((5, 3)), np.empty(5, dtype=np.int64))
+            np.empty((DEPTH, 4), dtype=np.int64), np.empty((5, 3)), np.empty(5, dtype=np.int64),
+            np.empty((_OPEN, 2), dtype=np.int64), np.empty(_OPEN))
 
 
 @jit
-def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array],
-                 room: tuple[Array, Array, Array, Array, Indices, Array, Indices],
+def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array], room: Room,
                  answer: tuple[Array, Indices]) -> None:
     """`descend` for many motions.
 
@@ -395,16 +515,24 @@ def descend_many(data: ForestData, tool: ToolData, asked: tuple[Array, Array],
     relief = (borrowed(tool[3][0]), borrowed(tool[3][1]), tool[3][2])
     cutter = (borrowed(tool[0]), borrowed(tool[1]), tool[2], relief)
     work, stack = (borrowed(room[0]), borrowed(room[1]), borrowed(room[2])), (borrowed(room[3]), borrowed(room[4]))
-    found, seen = room[5], room[6]
+    found, seen, bunch = room[5], room[6], (borrowed(room[7]), borrowed(room[8]))
     state = (borrowed(found), borrowed(seen))
+    first, last, count, looked = 0, 0, -1, 0
     for i in range(motions.shape[0]):
+        if i == last:
+            first = i
+            last, middle, reach = find_bunch(motions, first, _REACH * tool[2][1])
+            count, looked = -1, 0
+            if last - first >= _FEWEST:
+                count, looked = gather_open(forest, cutter, (middle, reach, row(motions[first], 2, 0)), cutoff, stack,
+                                            bunch)
         found[:] = 0.0
         found[0, :] = cutoff
         found[1, :] = np.inf
         seen[:4] = -1
-        seen[4] = 0
+        seen[4] = looked if i == first else 0
         motion = row(motions[i], 0, 0), row(motions[i], 1, 0), row(motions[i], 2, 0)
-        descend(forest, cutter, motion, stack, work, state)
+        descend(forest, cutter, motion, stack, begin(cutter[0].shape[0], bunch, count, stack), work, state)
         for c in range(3):
             values[i, 0, c] = min(found[0, c], found[1, c])
         values[i, 1:] = found[2:]
