@@ -9,6 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.planning import planner
 from toolaxis.job.planning.sub_surfaces import LOCKED, REFUSED_HINT, REFUSED_LOCK, read_division
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.sub_surface import division_document, division_from
@@ -139,3 +140,14 @@ def test_the_command_takes_the_same_division(tmp_path: Path) -> None:
     found = made.operations[0].orientation
     assert found.axis == pytest.approx(LEANING / np.linalg.norm(LEANING), abs=1e-12)
     assert found.reasons[0].startswith(LOCKED)
+
+
+def test_one_sub_surface_is_the_face_and_nothing_is_reckoned_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("no division is asked for")
+
+    monkeypatch.setattr(planner, "regions_of", refuse)
+    whole, one = (ta.plan(wavy(), "ball:6", SCALLOP, method="normal", workers=1, **more)  # type: ignore[arg-type]
+                  for more in ({}, {"regions": 1}))
+    assert one.outcome == "complete" and [op.face.label for op in one.operations] == ["1"]
+    assert np.array_equal(one.operations[0].path.cl, whole.operations[0].path.cl)

@@ -100,7 +100,7 @@ def post(fillet: float, length: float = 36, width: float = 30) -> ta.Part:
 @pytest.fixture(scope="module")
 def footed() -> Plan:
     """A floor with a post whose fillet is tighter than the cutter's corner, floor and fillet asked for."""
-    part = post(0.4)
+    part = post(0.4, 28, 24)
     floor = next(f for f in part.faces if np.allclose(f.evaluate(f.grid(4, 4)).point[:, 2], 5))
     fillet = next(f for f in part.faces if f.kind == "torus")
     return ta.plan(part, ta.Tool.torus(diameter=8, corner_radius=0.5, stickout=30), 0.1,

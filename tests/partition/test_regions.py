@@ -1,11 +1,16 @@
 """Sub-surfaces of one face: whole, without overlap, and no dearer than the face undivided."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 import toolaxis as ta
+from toolaxis.contact.strip.width import step_widths
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.polygons import signed_area
+from toolaxis.numeric.vectors import unit
+from toolaxis.partition import cost_grid
 from toolaxis.partition.face_division import LINK, Divider
 from toolaxis.partition.partition import regions
 from toolaxis.search.face_problem import task
@@ -29,6 +34,22 @@ def test_more_sub_surfaces_take_less_length(divider: Divider) -> None:
     curve = divider.curve
     assert np.isfinite(curve[1]) and (np.diff(curve[1:]) < 0).all()
     assert curve[6] < 0.95 * curve[1]
+
+
+@pytest.mark.parametrize("dense", [0.0, 2.0])
+def test_prices_are_the_same_whether_widths_are_taken_node_by_node_or_pair_by_pair(
+        dense: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the definition of a rate: passes for a unit of the step at each node, from its own half widths."""
+    monkeypatch.setattr(cost_grid, "_DENSE", dense)
+    job = task(waved(2.0, 30.0), TOOL, 0.05)
+    lattice, axes = Divider(job, cells=(3, 2)).lattice, unit(np.array([[0.1, 0, 1.0], [0, 0.2, 1.0], [0.3, 0.2, 1.0]]))
+    prices = cost_grid.compute_cost_grid(lattice, job.worth, job.feasibility, axes)
+    free = (prices.rates[:, 0] < cost_grid.FORBIDDEN) & ~prices.left
+    assert free.sum() > 12 and len(np.unique(prices.rates[free[:, None].repeat(2, 1)].round(9))) > 12
+    for k, feed in itertools.product(range(len(axes)), range(2)):
+        for i, j in np.argwhere(free[k]):
+            width = step_widths(job.worth.face, TOOL, lattice.uv[i, j], axes[k], 0.05, "uv"[feed]).sum()
+            assert prices.rates[k, feed, i, j] == pytest.approx(1 / width, rel=1e-8)
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])

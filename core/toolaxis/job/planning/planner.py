@@ -421,14 +421,13 @@ class PlanningJob:
 
     def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
         """Sub-surfaces of each face by itself; a number of them is not asked of faces narrower than the cutter."""
-        if self.regions is None:
+        if self.regions in (None, 1):  # one is the face itself: what pieces of it would cost need not be reckoned
             return [Target(face) for face in faces]
-        slim = "auto" if self.regions != 1 else 1
 
         def _division(k: int, inner: Progress) -> Regions | ToolAxisError:
             named = inner.within(f"face {faces[k].label}")
             standing = distances(faces[k], self.tool, self.part, self.obstacles)
-            count = slim if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
+            count = "auto" if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
             try:
                 return regions_of(self.task(faces[k], inner), count, progress=named, bosses=standing)
             except Cancelled:
