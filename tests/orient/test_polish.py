@@ -1,5 +1,7 @@
 """The walk to a local optimum, closer looks, and what the ledger keeps of them."""
 
+import warnings
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -56,6 +58,15 @@ def test_the_walk_follows_a_kinked_valley_and_stays_proven():
     assert found.value < start.value * 0.9985
     assert ledger.feasibility.witness(found.axis) is None
     assert ledger.closer + ledger.counts < 40
+
+
+def test_the_walk_leaves_an_axis_of_which_no_strip_is_known():
+    ledger = started(bumpy(93, 2.0), [-0.266, 0.032, 0.963])
+    start = count_row(ledger, 0, 0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = polish(ledger, replace(start, value=np.inf, passes=np.inf, length=np.inf), radians(2))
+    assert np.isfinite(found.value) and found.value < start.value
 
 
 def test_the_lowest_place_of_a_ring_is_that_of_its_parabola():

@@ -157,7 +157,9 @@ class _LocalSearch:
         further: in a ring, what stands opposite is mirrored there.
         """
         values, axes = self.ledger.values[rows, self.best.feed], self.ledger.axes[rows]
-        hope = np.asarray(values * self._ratios(axes, step) / self.best.value)
+        told = np.asarray(values * self._ratios(axes, step))
+        hope = np.full(len(told), np.inf)
+        hope[np.isfinite(told)] = told[np.isfinite(told)] / self.best.value  # which no strip may be known of
         opposite = np.roll(hope, len(hope) // 2)
         mirrored = np.where(np.isfinite(opposite), 2 - opposite, 1.0)
         return np.where(np.isinf(hope) & (self.ledger.reason[rows] == FREE), mirrored, hope)
@@ -251,8 +253,8 @@ def _lowest(middle: Array, axes: Array, hope: Array, step: float, worthwhile: fl
 
 
 def _ratio(ledger: AxisTable, one: CountedAxis) -> float:
-    """Exact value of a candidate over its screening value; 1 where screening knows none."""
+    """Exact value of a candidate over its screening value; 1 where either is unknown, as no strip can be laid there."""
     found = ledger.worth.screen(one.axis[None])
     charge = ledger.worth.charge(float(found.length[0].min()), one.unreached)
     screened = float(ledger.worth.values(one.axis[None], found)[0, one.feed]) * charge
-    return one.value / screened if np.isfinite(screened) else 1.0
+    return one.value / screened if np.isfinite(screened) and np.isfinite(one.value) else 1.0
