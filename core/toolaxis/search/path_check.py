@@ -403,29 +403,32 @@ def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int
     best = np.full(3, most + _ROUGH)
     if len(moves) > _LONG:
         some = moves[::len(moves) // _SPREAD + 1]
-        best = _bound_least(tool, group, _sort_lowest_first(some), components, best, _ROUGH) + _ROUGH
+        best = _bound_least(tool, group, some, components, best, _ROUGH) + _ROUGH
         table = _only(group, components) + best - _ROUGH
         for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
             moves = moves[~_keep_together(tool, group, moves, table, count)]
-    found = _bound_least(tool, group, _sort_lowest_first(moves), components, best, _ROUGH)
+    found = _bound_least(tool, group, moves, components, best, _ROUGH)
     return {c: float(found[c]) for c in components}
 
 
-def _sort_lowest_first(moves: Array) -> Array:
-    """Motions in the order of their heights along the axis."""
+def _lowest_first(moves: Array) -> NDArray[np.intp]:
+    """Motions in the order of their heights along the axis, (n,)."""
     if not len(moves):
-        return moves
-    return np.asarray(moves[np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")])
+        return np.empty(0, dtype=np.intp)
+    return np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
 
 
 def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,
                  resolution: float) -> Array:
     """Lower bounds (3,) of the least distance of components to a group over all motions, up to `most`.
 
-    Only what comes nearer than all before is told exactly: motions that are likely to come near belong first.
+    Only what comes nearer than all before is told exactly: the lowest motions, which are likely to come near, are
+    looked at first.  Those that are looked at together stay in the order of the path, as neighbours share a look.
     """
     asked, best = _only(group, components), np.broadcast_to(np.asarray(most, dtype=float), 3)
+    order = _lowest_first(moves)
     for first in range(0, len(moves), _BATCH):
-        least = lower_bounds(group.cells, tool, moves[first:first + _BATCH], best, resolution, asked).lower.min(axis=0)
+        some = moves[np.sort(order[first:first + _BATCH])]
+        least = lower_bounds(group.cells, tool, some, best, resolution, asked).lower.min(axis=0)
         best = np.where(least < best - resolution, least, best)
     return np.asarray(best - resolution)
