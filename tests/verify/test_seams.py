@@ -59,6 +59,21 @@ def test_what_is_deeper_than_tolerance_and_step_is_found(height, tolerance):
     assert judged(missing_riser(height), along(0.2, -tolerance + 0.001), tolerance).passed
 
 
+@pytest.mark.parametrize("height", [0.0034, 0.007])
+def test_a_piece_that_ends_beside_the_seam_has_the_step_of_its_face_taken_off(height):
+    """The plan has cut the higher face 0.3 mm from the seam: its step lies on the border of the whole face."""
+    lower, whole = missing_riser(height)
+    (u0, u1, v0, v1), across = whole.bounds, np.array([[0.0], [1.0]])
+    begin = u0 + (u1 - u0) * 0.3 / np.ptp(whole.evaluate(u0 + (u1 - u0) * across * [[1.0, 0.0]]).point[:, 0])
+    piece = whole.trimmed((np.array([[begin, v0], [u1, v0], [u1, v1], [begin, v1]]),))
+    assert piece.box[0][0] == pytest.approx(0.3)
+    deep = along(0.45, height - 0.01 - 0.8 * height)
+    found = judged((piece, lower, whole), deep, 0.01)
+    assert found.passed and found.gouge_max <= 0.01, found.reasons
+    assert not judged((piece, lower, whole), along(0.45, -0.011), 0.01).passed
+    assert not judged((piece, lower, whole), along(1.9, height - 0.011), 0.01).passed
+
+
 @pytest.mark.parametrize(("x", "z"), [(1.8, 0.007), (-1.8, 0.0)])
 @pytest.mark.parametrize("tolerance", [0.002, 0.01])
 def test_away_from_the_seam_all_is_charged(x, z, tolerance):

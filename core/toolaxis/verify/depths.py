@@ -91,7 +91,9 @@ class Depths:
         if not len(point):
             return np.zeros(0)
         lower = (*self.task.targets, *self.task.skin)
-        return depth_taken_off(steps_of(face, lower, point), point)
+        # The borders of a piece are the plan's: those of the file are the borders of its whole face.
+        whole = [one for one in self.task.skin if one.surface is face.surface and one is not face]
+        return np.max([depth_taken_off(steps_of(one, lower, point), point) for one in (face, *whole)], axis=0)
 
     def missed_behind_edges(self, owner: NDArray[np.int64], point: Array) -> Array:
         """By how much faces behind convex edges stand out over those that the cutter may touch, (n,) mm.
