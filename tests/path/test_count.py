@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import toolaxis as ta
 from toolaxis.errors import InvalidInput
 from toolaxis.path.estimate import Estimator, estimate, sum_rows_numpy
 from toolaxis.path.iso_parametric import layout
@@ -205,3 +206,15 @@ def test_bad_arguments(make, bad):
     arguments = {"axis": [0.3, 0, 1], "scallop": 0.02, "feed": "u"} | bad
     with pytest.raises(InvalidInput):
         count(make["flat"](10, 10), TORUS, **arguments)
+
+
+def test_small_parts_far_apart_between_all_rows():
+    """What a larger tool leaves of a long face may be a speck at either end: no row of the estimate meets one."""
+    x, y = np.meshgrid(np.linspace(0, 40, 5), np.linspace(0, 40, 5), indexing="ij")
+    whole = Face.from_bspline(np.stack([x, y, 0.01 * x * y / 40], axis=-1))
+    speck = 0.001 * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    face = whole.trimmed((speck, speck + 0.999))
+    told = Estimator.of(face, Tool.ball(2), 0.02).many([[0.0, 0.0, 1.0], [0.3, 0.2, 0.9]])
+    assert np.isinf(told.passes).all() and np.isinf(told.length).all()
+    found = ta.best_axis(face, Tool.ball(2), 0.02)
+    assert found.outcome != "feasible" or found.passes > 0

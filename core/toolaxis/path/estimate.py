@@ -121,7 +121,8 @@ class Estimator:
         ----------
         axes : (k, 3) array_like
         feeds : str
-            "u", "v" or "uv": the feed directions that are wanted; the other's column is inf.
+            "u", "v" or "uv": the feed directions that are wanted; the other's column is inf, and so is one in which no
+            pass that is looked at meets the face, as small parts of it far apart lie between them.
         exact : bool
             False leaves out the exact widths at the sample points and is some hundred times faster: good for
             screening, optimistic where the axis is near a normal.
@@ -129,7 +130,7 @@ class Estimator:
         directions = unit(as_rows(axes, 3, "axis"))
         passes, length = np.full((2, len(directions), 2), np.inf)
         for k, feed in enumerate(_FEEDS):
-            if feed in feeds:
+            if feed in feeds and len(self.rows[k].owner):
                 places = np.concatenate([self.samples.uv, self.ends[k]])
                 ratio = self._ratios(directions, feed, places) if exact else np.ones((len(directions), len(places)))
                 passes[:, k], length[:, k] = self._sums(self.rows[k], directions, ratio)
@@ -241,7 +242,7 @@ def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_SampledPasses, A
     line = found.line[points.interval]
     uv = chart.uv(points.along, steps[line])
     start = np.searchsorted(line, np.arange(len(steps) + 1)).astype(np.int64)
-    joined = np.append(False, np.diff(points.interval) == 0)
+    joined = np.diff(points.interval, prepend=-1) == 0
     owner, ends = samples.owner(uv), np.flatnonzero(~joined | ~np.append(joined[1:], False))
     some = ((np.arange(_END_ROWS) + 0.5) / _END_ROWS * len(steps)).astype(int)
     chosen = ends[np.isin(line[ends], some)]
