@@ -158,8 +158,9 @@ class _LocalSearch:
         """
         values, axes = self.ledger.values[rows, self.best.feed], self.ledger.axes[rows]
         told = np.asarray(values * self._ratios(axes, step))
+        known = np.isfinite(told)
         hope = np.full(len(told), np.inf)
-        hope[np.isfinite(told)] = told[np.isfinite(told)] / self.best.value  # which no strip may be known of
+        hope[known] = told[known] / self.best.value  # that value is inf where no strip can be laid at the best axis
         opposite = np.roll(hope, len(hope) // 2)
         mirrored = np.where(np.isfinite(opposite), 2 - opposite, 1.0)
         return np.where(np.isinf(hope) & (self.ledger.reason[rows] == FREE), mirrored, hope)

@@ -163,7 +163,7 @@ class ProvenMotions:
 
 
 def _others(count: int, rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """All rows up to a count but some; there may be millions."""
+    """The rows below a count that are not among some, (k,); without sorting, as there may be millions."""
     rest = np.ones(count, dtype=bool)
     rest[rows] = False
     return np.flatnonzero(rest)

@@ -360,66 +360,107 @@ def find_bunch(motions: Array, first: int, most: float) -> tuple[int, Triple, fl
 
 
 @jit_fma_inline
-def gather_open(data: ForestData, tool: ToolData, ball: tuple[Triple, float, Triple], cutoff: Array, stack: Stack,
-                bunch: Bunch) -> tuple[int, int]:
-    """The nodes of the tree that count for any motion in a ball, as many as there are, and how many were looked at.
+def pieces_in_reach(tool: ToolData, cell: Cell, ball: tuple[Triple, float, Triple], tag: tuple[int, int],
+                    cutoff: Array) -> tuple[int, float]:
+    """Which pieces a cell counts for at any tip in a ball, and the lowest of their bounds there.
 
     A distance changes by no more than the tip moves: what is as far from the tool in the middle of the ball as is asked
     for, and its radius farther, counts for none.
 
     Parameters
     ----------
-    data, tool, stack
+    tool, cell
         See the aliases.
     ball : tuple
         Middle, radius in mm, and the axis of all motions.
+    tag : (int, int)
+        Face, and the pieces that are asked for as bits.
     cutoff : (3,) array
         By component the value from which distances are not told apart, mm.
+    """
+    pieces, limits, (low, wide, resolution), _ = tool
+    (q, a, b, (e, radius, _), bend), (tip, reach, axis), (face, mask) = cell, ball, tag
+    w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
+    frame, view = (w, axis, a, b, (0.0, 0.0, 0.0)), look(w, axis)
+    outside = max(low - view[1], view[0] - wide) - radius
+    left, key = 0, np.inf
+    for p in range(pieces.shape[0]):
+        k = int(pieces[p, 7])
+        wanted = limits[face, k]
+        if not mask & (1 << p) or wanted == -np.inf:
+            continue
+        if resolution >= 0.0:
+            wanted = cutoff[k]
+        wanted += reach
+        if outside >= wanted:
+            continue
+        piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
+        lower = bound_over_cell(frame, piece, view, bend, (e, radius, wanted))[0]
+        if lower < wanted:
+            left |= 1 << p
+            key = min(key, lower - reach)
+    return left, key
+
+
+@jit_fma_inline
+def keep_in_order(bunch: Bunch, count: int, node: int, left: int, key: float) -> None:
+    """Add a node to those of a bunch, the nearest last.
+
+    Parameters
+    ----------
+    bunch : tuple
+        See the aliases.
+    count : int
+        How many nodes it has.
+    node, left : int
+        The node and its open pieces.
+    key : float
+        The lowest of their bounds, mm.
+    """
+    nodes, keys = bunch
+    place = count
+    while place > 0 and keys[place - 1] < key:
+        nodes[place, 0], nodes[place, 1] = nodes[place - 1, 0], nodes[place - 1, 1]
+        keys[place] = keys[place - 1]
+        place -= 1
+    nodes[place, 0], nodes[place, 1], keys[place] = node, left, key
+
+
+@jit_fma_inline
+def gather_open(data: ForestData, tool: ToolData, ball: tuple[Triple, float, Triple], cutoff: Array, stack: Stack,
+                bunch: Bunch) -> tuple[int, int]:
+    """The nodes of the tree that count for any motion in a ball, as many as there are, and how many were looked at.
+
+    Parameters
+    ----------
+    data, tool, stack
+        See the aliases.
+    ball, cutoff
+        As for `pieces_in_reach`.
     bunch : tuple
         Receives the nodes, the nearest last; where there are more than it holds, their number is -1.
     """
-    pieces, limits, (low, wide, resolution), _ = tool
-    shape, link = data[0], data[1]
-    tags, (tip, reach, axis), (nodes, keys) = stack[1], ball, bunch
-    tags[0, 0], tags[0, 2] = 0, (1 << pieces.shape[0]) - 1
+    shape, link, tags = data[0], data[1], stack[1]
+    tags[0, 0], tags[0, 2] = 0, (1 << tool[0].shape[0]) - 1
     depth, count, looked = 1, 0, 0
     while depth > 0:
         depth -= 1
-        node, mask, left, key = tags[depth, 0], tags[depth, 2], 0, np.inf
-        q, a, b, (e, radius, _), bend = tree_cell(shape, node)
-        w = (q[0] - tip[0], q[1] - tip[1], q[2] - tip[2])
-        frame, view = (w, axis, a, b, (0.0, 0.0, 0.0)), look(w, axis)
-        outside = max(low - view[1], view[0] - wide) - radius
+        node, mask = tags[depth, 0], tags[depth, 2]
+        cell = tree_cell(shape, node)
+        left, key = pieces_in_reach(tool, cell, ball, (link[node, 2], mask), cutoff)
         looked += 1
-        for p in range(pieces.shape[0]):
-            k = int(pieces[p, 7])
-            wanted = limits[link[node, 2], k]
-            if not mask & (1 << p) or wanted == -np.inf:
-                continue
-            wanted = (cutoff[k] if resolution >= 0.0 else wanted) + reach
-            if outside >= wanted:
-                continue
-            piece = (pieces[p, 0], pieces[p, 1], pieces[p, 2], pieces[p, 3], pieces[p, 4], pieces[p, 5], pieces[p, 6])
-            lower = bound_over_cell(frame, piece, view, bend, (e, radius, wanted))[0]
-            if lower < wanted:
-                left |= 1 << p
-                key = min(key, lower - reach)
         if left == 0:
             continue
-        if link[node, 3] < 0 and radius > reach:
+        if link[node, 3] < 0 and cell[3][1] > ball[1]:  # a branch that is larger than the ball
             for side in range(2):
                 if link[node, side] >= 0:
                     tags[depth, 0], tags[depth, 2] = link[node, side], left
                     depth += 1
-            continue
-        if count == nodes.shape[0]:
+        elif count == bunch[1].shape[0]:
             return -1, looked
-        place = count
-        while place > 0 and keys[place - 1] < key:
-            nodes[place, 0], nodes[place, 1], keys[place] = nodes[place - 1, 0], nodes[place - 1, 1], keys[place - 1]
-            place -= 1
-        nodes[place, 0], nodes[place, 1], keys[place] = node, left, key
-        count += 1
+        else:
+            keep_in_order(bunch, count, node, left, key)
+            count += 1
     return count, looked
 
 
