@@ -30,6 +30,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
 from toolaxis.regions.reach_screen import ReachScreen
+from toolaxis.regions.scene import ReachScene
 from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.report.warnings import warnings_of
 from toolaxis.search.machine_limits import intersect_limits
@@ -243,8 +244,8 @@ def test_stopped_within_a_tool_it_keeps_what_that_tool_finished(monkeypatch: pyt
     """Found: a face without an axis asked for the next tool, was stopped there, and took the finished ones with it."""
     whole, stopped = PlanningJob.plan_pieces, list[bool]()
 
-    def _stopped(job: PlanningJob, targets: list[Target], progress: Progress) -> Plan:
-        made = whole(job, targets, progress)
+    def _stopped(job: PlanningJob, targets: list[Target], scene: ReachScene, progress: Progress) -> Plan:
+        made = whole(job, targets, scene, progress)
         stopped.append(True)
         lost = Operation(1, made.operations[0].face, job.tool, Orientation(None))
         return replace(made, operations=(lost, *made.operations), outcome="cancelled")
@@ -359,7 +360,7 @@ def test_stopped_in_the_proof_of_what_is_out_of_reach_it_keeps_the_plan(monkeypa
 
 
 @pytest.mark.parametrize("given, said", [
-    ({"regions": 2}, "regions is planned with one tool and several are given"),
+    ({"regions": 2}, "a number of regions is planned with one tool and several are given"),
     ({"orientations": 1}, "orientations is planned with one tool"),
     ({"compare": True}, "a comparison is planned with one tool"),
     ({"method": "roman"}, "the method roman is planned with one tool"),
@@ -400,9 +401,9 @@ def test_the_largest_of_what_waits_for_a_tool_comes_first(monkeypatch: pytest.Mo
     seen: list[list[float]] = []
     pieces = PlanningJob.plan_pieces
 
-    def spied(self: PlanningJob, targets: list[Target], progress: Progress) -> Plan:
+    def spied(self: PlanningJob, targets: list[Target], scene: ReachScene, progress: Progress) -> Plan:
         seen.append([target.face.area for target in targets])
-        return pieces(self, targets, progress)
+        return pieces(self, targets, scene, progress)
 
     monkeypatch.setattr(PlanningJob, "plan_pieces", spied)
     ta.plan(walled(), ["ball:8", "ball:3"], 0.1, faces="all", workers=1)
@@ -453,3 +454,53 @@ def test_faces_of_a_skin_are_planned_one_by_one_only_where_more_of_it_is_in_reac
     planner._screen = SimpleNamespace(reachable=lambda skin: reachable[skin.number])  # type: ignore[assignment]
     found = planner._with_more_in_reach(skins, {k: [k] for k in machined}, Progress())  # type: ignore[arg-type, dict-item]
     assert [skin.number for skin in found] == [2]
+
+
+def bent() -> Part:
+    """A part of a tube of 50 mm radius, 60 mm long, its outer side machined over 100 degrees."""
+    turn, along = np.meshgrid(np.linspace(-0.9, 0.9, 13), np.linspace(0, 60, 7), indexing="ij")
+    return Part.from_faces([ta.Face.from_bspline(np.stack([50 * np.sin(turn), along, 50 * np.cos(turn)], axis=-1))])
+
+
+def planned_bent(**more: int) -> Plan:
+    """Of the bent face, by a bull nose that wants an axis nearly along the normal and a small ball."""
+    return ta.plan(bent(), ["torus:16x2", "ball:3"], 0.02, limits="cone:0,0,1,50", workers=1, **more)  # type: ignore
+
+
+@pytest.fixture(scope="module")
+def in_less_time() -> Plan:
+    return planned_bent()
+
+
+def test_a_face_is_divided_where_several_axes_take_less_time(in_less_time: Plan) -> None:
+    whole = planned_bent(regions=1)
+    assert in_less_time.outcome == whole.outcome == "complete"
+    assert [op.face.label for op in whole.operations] == ["1"]
+    assert [op.face.label for op in in_less_time.operations] == ["1a", "1b", "1c"][:len(in_less_time.operations)]
+    assert 2 <= in_less_time.orientations == len(in_less_time.operations)
+    assert in_less_time.seconds < whole.seconds - 60.0
+    assert sum(areas(in_less_time).values()) == pytest.approx(part_area := bent().face(1).area, rel=1e-5)
+    assert in_less_time.account.machined == pytest.approx(part_area, rel=1e-3)
+    assert ta.verify(in_less_time).passed
+
+
+def test_it_stays_whole_where_a_piece_has_no_axis(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is reckoned on a lattice is proven piece by piece; one that fails leaves the face as it was."""
+    search = PlanningJob._search_axis
+
+    def _lost(job: PlanningJob, target: Target, progress: Progress) -> tuple[Orientation, object]:
+        return (Orientation(None), None) if target.face.label == "1b" else search(job, target, progress)
+
+    monkeypatch.setattr(PlanningJob, "_search_axis", _lost)
+    made = planned_bent()
+    assert [op.face.label for op in made.operations] == ["1"] and made.outcome == "complete"
+
+
+def test_it_tells_where_the_program_fails_to_divide(monkeypatch: pytest.MonkeyPatch) -> None:
+    def _fails(*given: object) -> None:
+        raise RuntimeError("planted")
+
+    monkeypatch.setattr("toolaxis.job.planning.planner.divide_for_time", _fails)
+    made = planned_bent()
+    assert [op.done for op in made.operations] == [True] and len(made.faults) == 1
+    assert "planted" in made.faults[0].sentence

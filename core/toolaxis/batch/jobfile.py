@@ -201,7 +201,7 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
         passes=spec.inputs.passes, least_lean=spec.inputs.tolerance.least_lean,
         greatest_step_over=spec.inputs.greatest_step_over, lead=spec.inputs.lead))
     if len(tools) > 1:
-        check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions is not None,
+        check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions,
                                      spec.orientations is not None, compare=own["compare"]))
     key = _key(spec, tools, machine, own, tuple(map(_source, bodies)))
     return CheckedJob(_name(row, bodies[0]), spec, tools, machine, bodies, own, key)

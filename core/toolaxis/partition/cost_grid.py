@@ -87,7 +87,7 @@ class CostGrid:
 
 
 def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasibility, axes: Array,
-                      progress: Progress = NO_PROGRESS) -> CostGrid:
+                      progress: Progress = NO_PROGRESS, proven: Array | None = None) -> CostGrid:
     """Prices of axes at every node.
 
     Parameters
@@ -100,6 +100,8 @@ def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasi
     axes : (k, 3) array
         Unit vectors.
     progress : Progress
+    proven : (3,) array, optional
+        An axis that is known to machine the face; it may be used at all nodes, even where the screen refuses it.
 
     Returns
     -------
@@ -114,6 +116,9 @@ def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasi
     """
     nodes = np.flatnonzero(lattice.material)
     allowed, left = _usable(lattice, feasibility, axes, nodes, progress)
+    if proven is not None:
+        known = (axes == proven).all(axis=1)
+        allowed[known] = ~left[known]
     rates = np.zeros((len(axes), 2, lattice.material.size))
     rates[:, :, nodes] = np.where(left | allowed, 0.0, FORBIDDEN)[:, None]
     axis, node = np.nonzero(allowed & ~left)

@@ -168,11 +168,13 @@ class Divider:
     most : int
         Greatest number of sub-surfaces.
     progress : Progress
+    begin : (k, 3) array, optional
+        Axes to begin with, in place of axes all over the hemisphere; the first is known to machine the whole face.
     """
 
     def __init__(self, job: FaceProblem, cells: tuple[int, int] = (16, 16), most: int = MOST,
-                 progress: Progress = NO_PROGRESS) -> None:
-        self.job, self.most, self.progress = job, most, progress
+                 progress: Progress = NO_PROGRESS, begin: Array | None = None) -> None:
+        self.job, self.most, self.progress, self._begin = job, most, progress, begin
         self.lattice = Lattice(job.worth.face, cells)
 
     @cached_property
@@ -218,7 +220,8 @@ class Divider:
         ----------
         axes : (k, 3) array
         """
-        return compute_cost_grid(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress)
+        return compute_cost_grid(self.lattice, self.job.worth, self.job.feasibility, axes, self.progress,
+                                 None if self._begin is None else self._begin[0])
 
     @_of_its_face
     def solved(self, prices: CostGrid, piece_cost: float = 0.0) -> Solution:
@@ -304,6 +307,8 @@ class Divider:
         return name_pieces(face.label, rows, np.stack([found.known, found.division.curve[found.known]], axis=1))
 
     def _first_axes(self) -> Array:
+        if self._begin is not None:
+            return self._begin
         normals = self.lattice.normals[self.lattice.material]
         if not len(normals):
             raise InvalidInput(f"face {self.job.worth.face.label} has no place with a normal: it cannot be divided")

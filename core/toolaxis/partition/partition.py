@@ -87,7 +87,8 @@ def partition(source: Face | Part, tool: Tool, scallop: float, count: int | str 
 
 
 def regions(job: FaceProblem, count: int | str | None = None, index_cost: float | None = None,
-            progress: Progress = NO_PROGRESS, bosses: Sequence[Distance] = ()) -> Regions:
+            progress: Progress = NO_PROGRESS, bosses: Sequence[Distance] = (),
+            begin: Array | None = None) -> Regions:
     """Divide one face.
 
     Parameters
@@ -101,6 +102,8 @@ def regions(job: FaceProblem, count: int | str | None = None, index_cost: float 
     bosses : sequence of callable
         Distances to what stands on the face, from `toolaxis.partition.bosses.distances`: it is also divided around
         them, and the cheaper division is taken.
+    begin : (k, 3) array, optional
+        Axes to begin with, in place of axes all over the hemisphere; the first is known to machine the whole face.
 
     Raises
     ------
@@ -110,7 +113,7 @@ def regions(job: FaceProblem, count: int | str | None = None, index_cost: float 
         When the user asked to stop.
     """
     number = check_count(count)
-    divider = Divider(job, most=MOST if number is None else number, progress=progress)
+    divider = Divider(job, most=MOST if number is None else number, progress=progress, begin=begin)
     known = divider.best.known
     label = job.worth.face.label
     if not len(known) and number in (None, 1):

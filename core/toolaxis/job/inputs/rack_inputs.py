@@ -7,11 +7,12 @@ from toolaxis.plan.choices import DIVIDED
 
 
 class RackInputs(NamedTuple):
-    """What is asked for beside several tools: the method, whether its axis moves, and whether each of the others is."""
+    """What is asked for beside several tools: the method, whether its axis moves, the sub-surfaces of each face, and
+    whether each of the others is."""
 
     method: str
     moves: bool
-    regions: bool = False
+    regions: int | str | None = None
     orientations: bool = False
     division: bool = False
     compare: bool = False
@@ -30,7 +31,8 @@ def check_rack_inputs(asked: RackInputs) -> None:
         When something is asked for that is planned with one tool.
     """
     other = not asked.moves and asked.method not in DIVIDED
-    found = {"a moving axis": asked.moves, f"the method {asked.method}": other, "regions": asked.regions,
+    found = {"a moving axis": asked.moves, f"the method {asked.method}": other,
+             "a number of regions": asked.regions not in (None, 1, "auto"),
              "orientations": asked.orientations, "a division by hand": asked.division,
              "a comparison": asked.compare}
     for name, is_asked in found.items():

@@ -100,7 +100,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         that can be joined, see `toolaxis.join`.
     regions : int or "auto", optional
         Divide every face into so many sub-surfaces, or into as many as pay for their index moves; faces stay whole
-        unless given.
+        unless given.  With several tools they are divided into as many as pay, unless it is 1.
     orientations : int or "auto", optional
         Greatest number of different axes: faces are divided so that sub-surfaces share them; "auto" tries all numbers,
         gives them as the plan's options and takes the one at the knee; each has its own unless given.
@@ -242,7 +242,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:
-        check_rack_inputs(RackInputs(method, chosen.moves, regions is not None, orientations is not None, bool(given),
+        check_rack_inputs(RackInputs(method, chosen.moves, regions, orientations is not None, bool(given),
                                      compare))
         if not asked:
             pattern = _find_blades(loaded, progress)
@@ -270,7 +270,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     free, in_clamping = cut_faces(loaded, chosen_faces)
     if len(rack.tools) > 1:
         whole_part = None if pattern is None else replace(pattern, part=loaded)
-        jobs = [replace(job, tool=tool, one_by_one=False) for tool in rack.tools]
+        jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=regions != 1) for tool in rack.tools]
         made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
         return _tell_apart(_order_operations(made, progress), free, in_clamping)
     untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held

@@ -16,7 +16,7 @@ from toolaxis.job.planning.blade_pattern import Pattern, group_blade_faces
 from toolaxis.job.planning.clean_up_zones import add_clean_up_zones
 from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
-from toolaxis.job.planning.face_by_face import compare_areas, is_better, loses_area, name_faces
+from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better, loses_area, name_faces
 from toolaxis.job.planning.face_copies import carry_piece, copy_operation
 from toolaxis.job.planning.failures import fail_face, fail_operation
 from toolaxis.job.planning.held_side import cut_face
@@ -48,6 +48,7 @@ from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
+from toolaxis.regions.divide_for_time import WholeCut, divide_for_time
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.face_problem import task as search_task
@@ -71,6 +72,8 @@ REFUSED = "shared axis refused: "
 #: How many times the limit of work a sub-surface is allowed by its share of the area of a plan with several tools, at
 #: least and at most; and how many times besides for the passes of an axis that was found.
 _WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.5, 4.0, 1.5
+#: Share of a face that its pieces may machine less of it than one axis does.
+_SAME_AREA = 1e-3
 #: Why a sub-surface is divided before an axis for all of it is looked for.
 _IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
@@ -152,6 +155,8 @@ class PlanningJob:
     asked_area : float
         Area of all that is asked for in a plan with several tools, mm^2: by its share of that a sub-surface is allowed
         work, as there is another tool to be tried.  0 with one tool.
+    for_time : bool
+        Whether a plan with several tools divides what one axis machines where several axes take less time.
     """
 
     part: Part
@@ -168,6 +173,7 @@ class PlanningJob:
     division: tuple[SubSurface, ...] = ()
     one_by_one: bool = True
     asked_area: float = 0.0
+    for_time: bool = True
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -206,15 +212,59 @@ class PlanningJob:
         """The plan for faces with the clean-up zones of its operations."""
         return self._with_zones(self.carried_out(faces, progress), progress)
 
-    def plan_pieces(self, targets: list[Target], progress: Progress) -> Plan:
+    def plan_pieces(self, targets: list[Target], scene: ReachScene, progress: Progress) -> Plan:
         """The plan for sub-surfaces, with the clean-up zones of its operations.
 
         Parameters
         ----------
         targets : list of Target
+        scene : ReachScene
+            Of the part.
         progress : Progress
         """
-        return self._with_zones(self._plan_targets(targets, (), progress), progress)
+        made = self._plan_targets(targets, (), progress, scene)
+        if self.for_time:
+            made = went_on(made, lambda plan: self._in_less_time(plan, scene, progress.within("division for time")))
+        return self._with_zones(made, progress)
+
+    def _in_less_time(self, plan: Plan, scene: ReachScene, progress: Progress) -> Plan:
+        """A plan in which operations give way to several with axes of their own, where these take less time together
+        and machine as much."""
+        rows, rate = plan.operations, self.inputs.at_rates_of(self.tool).feedrate / 60
+
+        def _division(k: int, inner: Progress) -> Regions | None:
+            op, named = rows[k], inner.within(f"face {rows[k].face.label}")
+            if op.orientation.axis is None:
+                return None
+            whole = WholeCut(op.orientation.axis, self._seconds([op]), rate, INDEX_SECONDS)
+            return divide_for_time(self.task(op.face, named), scene, whole, named)
+
+        found = abreast(_division, len(rows), self.workers, progress)
+        divisions = {} if found.cancelled else {k: one for k, one in found.results.items() if one is not None}
+        targets = {k: [Target(piece, axis) for piece, axis in zip(one.faces, one.axes, strict=True)]
+                   for k, one in divisions.items()}
+        made, cancelled = self._operations_of([target for some in targets.values() for target in some], progress)
+        kept: list[Operation] = []
+        for k, op in enumerate(rows):
+            pieces = [one for target in targets.get(k, ()) if (one := made_of(target, made)) is not None]
+            kept += pieces if self._serves_better(pieces, op) else [op]
+        numbered = tuple(replace(op, number=k) for k, op in enumerate(kept, 1))
+        divided = replace(plan, operations=numbered)
+        for why in found.faults.values():
+            divided = with_fault(divided, why)
+        return replace(divided, outcome="cancelled") if found.cancelled or cancelled else divided
+
+    def _serves_better(self, pieces: Sequence[Operation], whole: Operation) -> bool:
+        """Whether the operations of a face's pieces machine as much as that of the whole, in less time."""
+        if not pieces or not all(op.done for op in pieces):
+            return False
+        lost = area_machined([whole]) - area_machined(pieces)
+        saved = self._seconds([whole]) - self._seconds(pieces)
+        return lost <= _SAME_AREA * whole.face.area and saved >= INDEX_SECONDS
+
+    def _seconds(self, operations: Sequence[Operation]) -> float:
+        """Time of some operations in their quickest order, index moves between them included."""
+        return add_times(self._plan(tuple(operations), "complete", ()), reorder=True).seconds
 
     def copy_operations(self, asked: Sequence[tuple[Operation, AlikeFace]],
                         progress: Progress) -> list[Operation | None] | None:
@@ -294,11 +344,12 @@ class PlanningJob:
             return self._plan((), "cancelled", options)
         return self._plan_targets(targets, options, progress)
 
-    def _plan_targets(self, targets: list[Target], options: tuple[Option, ...], progress: Progress) -> Plan:
+    def _plan_targets(self, targets: list[Target], options: tuple[Option, ...], progress: Progress,
+                      scene: ReachScene | None = None) -> Plan:
         """The plan for sub-surfaces as they are."""
         made, cancelled = self._operations_of(targets, progress)
         if not cancelled and self._may_divide:
-            made, cancelled = self._divided_by_reach(targets, made, progress)
+            made, cancelled = self._divided_by_reach(targets, made, scene, progress)
         if cancelled:  # a sub-surface that waits for its division has not been tried
             made = tuple(op for op in made if _IN_PIECES not in op.orientation.reasons)
         plan = self._plan(made, "cancelled" if cancelled else _outcome(made), options)
@@ -317,7 +368,7 @@ class PlanningJob:
         """Whether faces that no axis reaches whole are divided: where nobody said how, and the search is free."""
         return self.inputs.method in DIVIDED and self.regions is None and self.orientations is None
 
-    def _divided_by_reach(self, targets: list[Target], made: tuple[Operation, ...],
+    def _divided_by_reach(self, targets: list[Target], made: tuple[Operation, ...], scene: ReachScene | None,
                           progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations with those of sub-surfaces in the place of faces that no axis reaches whole."""
         lost = [k for k, op in enumerate(made) if not op.done and not op.failed and targets[k].ended is None
@@ -325,8 +376,8 @@ class PlanningJob:
         stage = progress.within("division by reach")
         if not lost:
             return made, False
-        scene = ReachScene.of(self.part, self.obstacles)
-        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, scene, inner), len(lost), self.workers,
+        known = ReachScene.of(self.part, self.obstacles) if scene is None else scene
+        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, known, inner), len(lost), self.workers,
                         stage)
         if found.cancelled:
             return made, True

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.errors import Cancelled, fault
+from toolaxis.errors import Cancelled, Fault, fault
 from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better
 from toolaxis.job.planning.face_copies import refuse_copy
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
-from toolaxis.job.planning.planner import PlanningJob
+from toolaxis.job.planning.planner import PlanningJob, with_fault
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
@@ -103,6 +103,8 @@ class RackPlanner:
     _waiting: list[_Waiting] = field(default_factory=list)
     _rests: list[UnplannedArea] = field(default_factory=list)
     _used: set[int] = field(default_factory=set)
+    #: What failed that is of no single sub-surface.
+    _faults: list[Fault] = field(default_factory=list)
     _steps: Counter[str] = field(default_factory=Counter)
 
     def plan(self, faces: Sequence[Face], progress: Progress) -> Plan:
@@ -245,7 +247,8 @@ class RackPlanner:
         targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, others=self._axes_of(one),
                           in_pieces=one.in_pieces) for label, one in now.items()]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
-        made = self.jobs[tool].plan_pieces(targets, progress)
+        made = self.jobs[tool].plan_pieces(targets, self._screen.scene, progress)
+        self._faults += made.faults
         origins = [_origin(op.face, now) for op in made.operations]
         rests = [_rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
         following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
@@ -427,8 +430,11 @@ class RackPlanner:
                          for k, op in enumerate(rows))
         if not outcome:
             outcome = outcome_of_rack(numbered)
-        return replace(self.jobs[0].empty(), tools=tuple(job.tool for job in self.jobs), operations=numbered,
+        made = replace(self.jobs[0].empty(), tools=tuple(job.tool for job in self.jobs), operations=numbered,
                        outcome=outcome, unplanned=tuple(self._rests))
+        for why in self._faults:
+            made = with_fault(made, why)
+        return made
 
     def _machined_of_rest(self) -> dict[int, float]:
         """By operation the area that others machine of what it left, mm^2."""

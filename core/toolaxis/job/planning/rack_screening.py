@@ -66,7 +66,8 @@ class RackScreening:
     def __init__(self, jobs: Sequence[PlanningJob], faces: Sequence[Face]) -> None:
         first = jobs[0]
         self._jobs = jobs
-        self._scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
+        #: The part, as its faces are screened.
+        self.scene = ReachScene.of(first.part, first.obstacles, first.inputs.tolerance, first.axis_limits,
                                     first.inputs.allowance)
         #: What was found of faces, by their places.
         self._known: dict[tuple[NurbsSurface, bytes], ReachBits] = {}
@@ -127,7 +128,7 @@ class RackScreening:
         if known is not None and known.begin <= begin and known.shape[1:] == wide.shape[1:]:
             held = known.from_tool(begin)
         else:
-            scene = replace(self._scene, allowance=inputs.allowance_of(face))
+            scene = replace(self.scene, allowance=inputs.allowance_of(face))
             held = ReachScreen(cells, scene).screen_promising(tools, axes, wide > 0)
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         return FacePrices(seconds, cells.area), facing

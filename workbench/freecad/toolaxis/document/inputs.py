@@ -267,8 +267,8 @@ class JobInputs:
         job, tools = self.job(), self.tools()
         if self.rack and len(tools) > 1:
             job.check_rack(sorted(tools, key=lambda tool: -tool.radius))
-            check_rack_inputs(RackInputs(self.method, self.moves, self.regions is not None,
-                                         self.orientations is not None, bool(self.pieces), self.compare))
+            check_rack_inputs(RackInputs(self.method, self.moves, self.regions, self.orientations is not None,
+                                         bool(self.pieces), self.compare))
         else:
             job.check_tool(tools[0])
         if len(self.things) > 1 and (job.avoid or job.allowance_on):
