@@ -58,8 +58,9 @@ def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
 def test_a_rack_is_chosen_without_typing_a_tool(desk, form):
     assert form.rack.currentText() == "my-rack.toml" and form.facesTold.text() == "1 of Grooved"
     assert form.compute.isEnabled()
-    for name in ("strategy", "regions", "orientations", "compare"):
+    for name in ("strategy", "orientations", "compare"):
         assert not getattr(form, name).isEnabled(), name
+    assert form.regions.isEnabled() and form.regions.currentText() == "automatic"
     form.tabs.setCurrentWidget(form.toolTab)
     assert form.mostTools.isVisible() and form.rackTools.isVisible()
     assert not form.diameter.isVisible() and not form.holder.isVisible()
@@ -68,6 +69,26 @@ def test_a_rack_is_chosen_without_typing_a_tool(desk, form):
     desk.shot("90-rack")
     form.rack.setCurrentIndex(0)
     assert form.diameter.isVisible() and not form.rackTools.isVisible() and form.strategy.isEnabled()
+    assert form.regions.currentText() == "whole faces"
+
+
+def test_faces_stay_whole_where_that_is_asked_of_a_rack(desk, grooved, form):
+    from freecad.toolaxis.document.inputs import inputs_of
+
+    form.regions.setCurrentIndex(form.regions.findText("number"))
+    form.regionsNumber.setValue(3)
+    assert "a number of regions is planned with one tool" in form.message.text() and not form.compute.isEnabled()
+    form.regions.setCurrentIndex(form.regions.findText("whole faces"))
+    assert form.compute.isEnabled()
+    desk.computed(form)
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    plan = plan_in(grooved[0].Document)
+    assert inputs_of(plan).regions == 1
+    plan.ViewObject.doubleClicked()
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+    form = desk.form("ToolAxisPlan")
+    assert form.regions.currentText() == "whole faces"
 
 
 def test_a_dialog_that_is_cancelled_and_a_rack_that_is_none(desk, form, monkeypatch, tmp_path):

@@ -56,7 +56,7 @@ class PlanForm:
                             for name in ("stock", "greatestStepOver", "lead")}
         self.quantities["leastLean"] = QuantityField(self._find("leastLean"), "deg", (0, 4))
         self.lines = {field: self._find(field, QtWidgets.QLineEdit) for field in _LINES}
-        self.racks = RackChoice(form)
+        self.racks, self._several = RackChoice(form), False
         self.setup = SetupTab(form, self.faces)
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
@@ -122,13 +122,21 @@ class PlanForm:
             self._find(name).setEnabled(self.strategy_name == INDEXED)
         for name in ("orientations", "orientationsNumber"):
             self._find(name).setEnabled(self.strategy_name == INDEXED and not several)
-        for name in ("strategy", "regions", "regionsNumber", "compare"):
+        for name in ("strategy", "compare"):
             self._find(name).setEnabled(not several)
+        self._show_division(several)
         for name in ("toolGroup", "holderGroup", "shankGroup"):
             self._find(name).setVisible(not several)
         for name, visible in shown.items():
             for member in (*members.get(name, (name,)), f"{name}Label"):
                 self._find(member).setVisible(visible)
+
+    def _show_division(self, several):
+        """Show what a rack does with faces unless it is told otherwise, and what one tool does, as soon as the other is
+        chosen."""
+        if several != self._several:
+            self._several = several
+            self.set_count("regions", None)
 
     @property
     def strategy_name(self):
@@ -249,9 +257,10 @@ class PlanForm:
             "regions" or "orientations".
         """
         combo, spin = self.counts[name]
-        if self.racks.chosen or (name == "orientations" and self.strategy_name != INDEXED):
+        if name == "orientations" and (self.racks.chosen or self.strategy_name != INDEXED):
             return None
-        return {_NONE: None, _AUTO: "auto"}.get(combo.currentIndex(), spin.value())
+        usual = {_NONE: 1, _AUTO: None} if self.racks.chosen else {_NONE: None, _AUTO: "auto"}
+        return usual.get(combo.currentIndex(), spin.value())
 
     def set_count(self, name, count):
         """Show a number of sub-surfaces or axes.
@@ -264,7 +273,8 @@ class PlanForm:
         combo, spin = self.counts[name]
         if isinstance(count, int):
             spin.setValue(count)
-        combo.setCurrentIndex({None: _NONE, "auto": _AUTO}.get(count, _NUMBER))
+        usual = {1: _NONE, None: _AUTO, "auto": _AUTO} if self.racks.chosen else {None: _NONE, "auto": _AUTO}
+        combo.setCurrentIndex(usual.get(count, _NUMBER))
 
     def fill(self, inputs):
         """Show what a job was, or should be, given; what no field can show is a refusal until a field is changed.
@@ -288,8 +298,6 @@ class PlanForm:
         self._find("method", QtWidgets.QComboBox).setCurrentIndex(METHODS.index(inputs.method))
         self.strategy.setCurrentIndex(STRATEGIES.index(inputs.strategy))
         self.roughness.setValue(inputs.roughness)
-        for name in self.counts:
-            self.set_count(name, getattr(inputs, name))
         for name, box in self.switches.items():
             box.setChecked(getattr(inputs, name))
         for field, name in _ASKED.items():
@@ -297,6 +305,8 @@ class PlanForm:
         for field, name in _LINES.items():
             self.lines[field].setText(getattr(inputs, name))
         self.racks.choose(inputs.rack, inputs.most_tools)
+        for name in self.counts:
+            self.set_count(name, getattr(inputs, name))
         self.setup.fill(inputs)
         self.given = self.tool_text, inputs.tool_number, inputs.tool_title
         self.set_limits(inputs.limits)
