@@ -16,7 +16,7 @@ from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.output.post import post_plan
 from toolaxis.job.output.report import report
 from toolaxis.job.output.verify import verdict_document
-from toolaxis.job.planning import pipeline
+from toolaxis.job.planning import pipeline, planner
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.rack import RackPlanner, _merge, _Waiting
@@ -486,12 +486,7 @@ def test_a_face_is_divided_where_several_axes_take_less_time(in_less_time: Plan)
 
 def test_it_stays_whole_where_a_piece_has_no_axis(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is reckoned on a lattice is proven piece by piece; one that fails leaves the face as it was."""
-    search = PlanningJob._search_axis
-
-    def _lost(job: PlanningJob, target: Target, progress: Progress) -> tuple[Orientation, object]:
-        return (Orientation(None), None) if target.face.label == "1b" else search(job, target, progress)
-
-    monkeypatch.setattr(PlanningJob, "_search_axis", _lost)
+    searched(monkeypatch, lost="1b")
     made = planned_bent()
     assert [op.face.label for op in made.operations] == ["1"] and made.outcome == "complete"
 
@@ -504,3 +499,49 @@ def test_it_tells_where_the_program_fails_to_divide(monkeypatch: pytest.MonkeyPa
     made = planned_bent()
     assert [op.done for op in made.operations] == [True] and len(made.faults) == 1
     assert "planted" in made.faults[0].sentence
+
+
+def searched(monkeypatch: pytest.MonkeyPatch, lost: str = "") -> list[str]:
+    """Labels of the sub-surfaces whose axes are searched from now on; of one of them none is found."""
+    search, seen = PlanningJob._search_axis, list[str]()
+
+    def _spied(job: PlanningJob, target: Target, progress: Progress) -> tuple[Orientation, object]:
+        seen.append(target.face.label)
+        return (Orientation(None), None) if target.face.label == lost else search(job, target, progress)
+
+    monkeypatch.setattr(PlanningJob, "_search_axis", _spied)
+    return seen
+
+
+def divided_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let what takes a minute count as very long, and twenty seconds as worth a division."""
+    monkeypatch.setattr(planner, "_LONG", 60.0)
+    monkeypatch.setattr("toolaxis.regions.divide_for_time.WORTH_SECONDS", 20.0)
+
+
+def test_what_takes_very_long_is_divided_before_it_is_planned_whole(in_less_time: Plan,
+                                                                    monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: the passes of a fairing of 9 m2 under one axis took longer than all else."""
+    divided_early(monkeypatch)
+    seen = searched(monkeypatch)
+    made = planned_bent()
+    assert seen and "1" not in seen and made.outcome == "complete"
+    assert made.seconds == pytest.approx(in_less_time.seconds, rel=0.1) and len(made.operations) > 1
+
+
+def test_it_is_planned_whole_where_a_piece_of_it_has_no_axis(monkeypatch: pytest.MonkeyPatch) -> None:
+    divided_early(monkeypatch)
+    seen = searched(monkeypatch, lost="1b")
+    made = planned_bent()
+    assert seen[-1] == "1" and {"1a", "1b"} <= set(seen)
+    assert [op.face.label for op in made.operations] == ["1"] and made.outcome == "complete"
+
+
+def test_stopped_before_it_is_divided_it_counts_as_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    divided_early(monkeypatch)
+    stages: list[str] = []
+    stopping = Progress(lambda stage, done, total: stages.append(stage),
+                        lambda: any("division for time" in stage for stage in stages))
+    made = ta.plan(bent(), ["torus:16x2", "ball:3"], 0.02, limits="cone:0,0,1,50", workers=1, progress=stopping)
+    assert made.outcome == "cancelled" and not made.operations
+    assert made.account.not_begun == pytest.approx(bent().face(1).area, rel=1e-6)

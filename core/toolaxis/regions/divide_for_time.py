@@ -97,6 +97,33 @@ def divide_for_time(job: FaceProblem, scene: ReachScene, whole: WholeCut,
     return found
 
 
+def estimate_seconds(job: FaceProblem, axis: Array, feed: float) -> float:
+    """About how long it takes to machine a face under an axis, s, as strips of the best feed on a few cells tell.
+
+    Parameters
+    ----------
+    job : FaceProblem
+    axis : (3,) array
+    feed : float
+        mm/s
+    """
+    cells = _cells_of(job)
+    wide = _widths_on(job, cells, axis[None])[0]
+    held = wide > 0
+    return float(np.sum(cells.area[held] / wide[held])) / feed
+
+
+def _cells_of(job: FaceProblem) -> FaceCells:
+    face = job.worth.face
+    return FaceCells.few(face, max(job.worth.tool.radius, float(np.sqrt(face.area / _CELLS))))
+
+
+def _widths_on(job: FaceProblem, cells: FaceCells, axes: Array) -> Array:
+    """Strip widths on cells under axes, (k, n) mm."""
+    worth = job.worth
+    return np.asarray(widths(cells, [worth.tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0])
+
+
 class _StripTable(NamedTuple):
     """How wide strips are on cells of a face under axes some degrees apart, those of the best feed.
 
@@ -112,11 +139,10 @@ class _StripTable(NamedTuple):
     @staticmethod
     def of(job: FaceProblem, scene: ReachScene, axis: Array) -> "_StripTable":
         """Strips on a face that an axis machines."""
-        worth, tool = job.worth, job.worth.tool
-        cells = FaceCells.few(worth.face, max(tool.radius, float(np.sqrt(worth.face.area / _CELLS))))
+        cells = _cells_of(job)
         axes = np.concatenate([axis[None], screening_axes([cells], job.feasibility.limits)])
-        wide = widths(cells, [tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0]
-        free = ReachScreen(cells, scene).screen([tool], axes, (wide > _WIDER * wide[0])[None])[0]
+        wide = _widths_on(job, cells, axes)
+        free = ReachScreen(cells, scene).screen([job.worth.tool], axes, (wide > _WIDER * wide[0])[None])[0]
         free[0] = True
         return _StripTable(axes, np.where(free, wide, 0.0), cells.area)
 

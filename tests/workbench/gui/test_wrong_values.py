@@ -1,5 +1,6 @@
 """What is wrong in the document or on the disk while a command begins or a panel stands: one sentence, nothing made."""
 
+import threading
 import time
 
 import FreeCAD
@@ -324,6 +325,23 @@ def test_all_operations_deleted_under_a_panel(desk, operation, command):
     desk.pump(0.5)
     desk.wait(lambda: not busy(form), "it is there")
     assert "deleted" in form.message.text() and is_sentence(form.message.text())
+    close(desk)
+
+
+def test_what_the_machine_met_is_left_when_its_operation_goes(desk, operation, monkeypatch):
+    """Found: the collisions were found just as the operation was deleted, and told of one that was gone."""
+    from freecad.toolaxis.gui.machine import panel as machine_panel
+
+    look, ready = machine_panel.met_by, threading.Event()
+    monkeypatch.setattr(machine_panel, "met_by", lambda *given: (ready.wait(20), look(*given))[1])
+    form = opened(desk, "ToolAxis_Machine", operation)
+    desk.wait(lambda: not busy(form), "it is there")
+    ready.set()
+    time.sleep(1.0)  # it is found, and nobody has taken it yet
+    operation.Document.removeObject(operation.Name)
+    desk.pump(0.5)
+    desk.wait(lambda: not busy(form), "it is there")
+    assert "deleted" in form.message.text()
     close(desk)
 
 

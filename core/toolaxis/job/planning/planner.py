@@ -48,7 +48,7 @@ from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
-from toolaxis.regions.divide_for_time import WholeCut, divide_for_time
+from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.face_problem import task as search_task
@@ -74,6 +74,8 @@ REFUSED = "shared axis refused: "
 _WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.5, 4.0, 1.5
 #: Share of a face that its pieces may machine less of it than one axis does.
 _SAME_AREA = 1e-3
+#: Time from which on a sub-surface is divided before it is planned whole, s, and what is told of it until then.
+_LONG, _HOURS = 1200.0, "it is divided before its axis is searched"
 #: Why a sub-surface is divided before an axis for all of it is looked for.
 _IN_PIECES = "no axis reaches all of it, as the screening of its cells sees it"
 
@@ -225,6 +227,8 @@ class PlanningJob:
         made = self._plan_targets(targets, (), progress, scene)
         if self.for_time:
             made = went_on(made, lambda plan: self._in_less_time(plan, scene, progress.within("division for time")))
+        if made.outcome == "cancelled":
+            made = replace(made, operations=tuple(op for op in made.operations if not _waits(op)))
         return self._with_zones(made, progress)
 
     def _in_less_time(self, plan: Plan, scene: ReachScene, progress: Progress) -> Plan:
@@ -236,28 +240,42 @@ class PlanningJob:
             op, named = rows[k], inner.within(f"face {rows[k].face.label}")
             if op.orientation.axis is None:
                 return None
-            whole = WholeCut(op.orientation.axis, self._seconds([op]), rate, INDEX_SECONDS)
-            return divide_for_time(self.task(op.face, named), scene, whole, named)
+            job = self.task(op.face, named)
+            seconds = self._seconds([op]) if op.done else estimate_seconds(job, op.orientation.axis, rate)
+            return divide_for_time(job, scene, WholeCut(op.orientation.axis, seconds, rate, INDEX_SECONDS), named)
 
         found = abreast(_division, len(rows), self.workers, progress)
         divisions = {} if found.cancelled else {k: one for k, one in found.results.items() if one is not None}
-        targets = {k: [Target(piece, axis) for piece, axis in zip(one.faces, one.axes, strict=True)]
+        targets = {k: [Target(piece, axis, however_long=True) for piece, axis in zip(one.faces, one.axes, strict=True)]
                    for k, one in divisions.items()}
         made, cancelled = self._operations_of([target for some in targets.values() for target in some], progress)
+        divided = {k: pieces for k, some in targets.items()
+                   if self._serves_better(pieces := self._made_of_all(some, made), rows[k])}
+        late = [Target(op.face, op.orientation.axis, however_long=True) for k, op in enumerate(rows)
+                if _waits(op) and k not in divided]
+        if found.cancelled or cancelled:
+            late = []
+        whole, stopped = self._operations_of(late, progress)
         kept: list[Operation] = []
         for k, op in enumerate(rows):
-            pieces = [one for target in targets.get(k, ()) if (one := made_of(target, made)) is not None]
-            kept += pieces if self._serves_better(pieces, op) else [op]
-        numbered = tuple(replace(op, number=k) for k, op in enumerate(kept, 1))
-        divided = replace(plan, operations=numbered)
+            again = [one for one in whole if one.face is op.face]
+            kept += divided.get(k) or again or ([] if _waits(op) else [op])
+        plan = replace(plan, operations=tuple(replace(op, number=k) for k, op in enumerate(kept, 1)))
         for why in found.faults.values():
-            divided = with_fault(divided, why)
-        return replace(divided, outcome="cancelled") if found.cancelled or cancelled else divided
+            plan = with_fault(plan, why)
+        return replace(plan, outcome="cancelled") if found.cancelled or cancelled or stopped else plan
+
+    @staticmethod
+    def _made_of_all(targets: Sequence[Target], operations: Sequence[Operation]) -> list[Operation]:
+        """What was made of some targets, as far as it was."""
+        return [one for target in targets if (one := made_of(target, operations)) is not None]
 
     def _serves_better(self, pieces: Sequence[Operation], whole: Operation) -> bool:
         """Whether the operations of a face's pieces machine as much as that of the whole, in less time."""
         if not pieces or not all(op.done for op in pieces):
             return False
+        if not whole.done:
+            return True
         lost = area_machined([whole]) - area_machined(pieces)
         saved = self._seconds([whole]) - self._seconds(pieces)
         return lost <= _SAME_AREA * whole.face.area and saved >= INDEX_SECONDS
@@ -351,7 +369,7 @@ class PlanningJob:
         if not cancelled and self._may_divide:
             made, cancelled = self._divided_by_reach(targets, made, scene, progress)
         if cancelled:  # a sub-surface that waits for its division has not been tried
-            made = tuple(op for op in made if _IN_PIECES not in op.orientation.reasons)
+            made = tuple(op for op in made if _IN_PIECES not in op.orientation.reasons and not _waits(op))
         plan = self._plan(made, "cancelled" if cancelled else _outcome(made), options)
         return self._face_by_face(plan, progress) if not cancelled and self._may_divide else plan
 
@@ -372,7 +390,7 @@ class PlanningJob:
                           progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations with those of sub-surfaces in the place of faces that no axis reaches whole."""
         lost = [k for k, op in enumerate(made) if not op.done and not op.failed and targets[k].ended is None
-                and targets[k].given is None]
+                and targets[k].given is None and not _waits(op)]
         stage = progress.within("division by reach")
         if not lost:
             return made, False
@@ -575,6 +593,8 @@ class PlanningJob:
         inner = progress.within(f"face {face.label} ({number} of {place[1]})")
         inner.report("search for the axis", 0, 1)
         try:
+            if (long := self._axis_of_hours(target, inner)) is not None:
+                return Operation(number, face, self.tool, Orientation(long, outcome="not_found", reasons=(_HOURS,)))
             found, path = Orientation(None), None
             given = target.given if target.given is not None and target.given.held else None
             if given is not None and not self._strategy.moves and self.inputs.method != "one":
@@ -600,6 +620,15 @@ class PlanningJob:
             raise Cancelled("cancelled by the user")
         frame = None if path is None else frame_of(face, found, self.datum)
         return Operation(number, face, self.tool, found, path, frame, found.zones)
+
+    def _axis_of_hours(self, target: Target, progress: Progress) -> Array | None:
+        """The axis that is known of a sub-surface, where it would take so long under that one that it is divided first;
+        None elsewhere."""
+        known = target.others[-1:] if target.axis is None else (target.axis,)
+        if not self.for_time or not self.asked_area or target.however_long or not known:
+            return None
+        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
+        return known[0] if estimate_seconds(self.task(target.face, progress), known[0], rate) > _LONG else None
 
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
@@ -665,6 +694,11 @@ class PlanningJob:
 def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:
     """The operation of a face that cannot be done, in the words of an exception."""
     return Operation(number, face, tool, Orientation(None, reasons=(f"no axis found: {reason}",)))
+
+
+def _waits(op: Operation) -> bool:
+    """Whether a sub-surface is yet to be divided for its time, or planned whole."""
+    return _HOURS in op.orientation.reasons
 
 
 def _outcome(operations: Sequence[Operation]) -> str:

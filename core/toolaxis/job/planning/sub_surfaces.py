@@ -39,7 +39,8 @@ _FACETS = 16
 class Target(NamedTuple):
     """A sub-surface, the axis that its division or the choice of its tool reckoned with, if any, whether it shares that
     with others, the axes that others have, what of it was given by hand, what became of it where its division failed or
-    was refused, and whether it is divided by reach before an axis is looked for that reaches all of it."""
+    was refused, whether it is divided by reach before an axis is looked for that reaches all of it, and whether it is
+    planned whole however long that takes."""
 
     face: Face
     axis: Array | None = None
@@ -48,6 +49,7 @@ class Target(NamedTuple):
     given: SubSurface | None = None
     ended: Operation | None = None
     in_pieces: bool = False
+    however_long: bool = False
 
 
 def by_axis(targets: list[Target]) -> list[Target]:

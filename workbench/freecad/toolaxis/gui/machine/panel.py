@@ -263,6 +263,8 @@ class MachinePanel(Panel):
         """An operation is about to be deleted: go on without it."""
         if any(operation.Name == name for operation in self.operations):
             self.operations = [operation for operation in self.operations if operation.Name != name]
+            self._leave()  # what is found now counts the one that goes
+            self.found, self.held = None, {}
             QtCore.QTimer.singleShot(0, lambda: None if self.over else self._changed())
 
     def _forget_view(self):
