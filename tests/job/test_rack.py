@@ -23,6 +23,7 @@ from toolaxis.job.planning.rack import RackPlanner, _merge, _Waiting
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.machine.setup import Mounting
+from toolaxis.partition.partition import regions
 from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -545,3 +546,11 @@ def test_stopped_before_it_is_divided_it_counts_as_not_begun(monkeypatch: pytest
     made = ta.plan(bent(), ["torus:16x2", "ball:3"], 0.02, limits="cone:0,0,1,50", workers=1, progress=stopping)
     assert made.outcome == "cancelled" and not made.operations
     assert made.account.not_begun == pytest.approx(bent().face(1).area, rel=1e-6)
+
+
+def test_a_division_that_takes_longer_than_the_whole_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = searched(monkeypatch)
+    monkeypatch.setattr(planner, "divide_for_time", lambda job, scene, whole, progress: regions(job, 2))
+    made = ta.plan(Part.from_faces([walled().faces[0]]), TOOLS, SCALLOP, limits=UP, workers=1)
+    assert {"1", "1a", "1b"} <= set(seen), "it was tried"
+    assert [op.face.label for op in made.operations] == ["1"] and made.outcome == "complete"
