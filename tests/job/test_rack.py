@@ -554,3 +554,16 @@ def test_a_division_that_takes_longer_than_the_whole_is_not_kept(monkeypatch: py
     made = ta.plan(Part.from_faces([walled().faces[0]]), TOOLS, SCALLOP, limits=UP, workers=1)
     assert {"1", "1a", "1b"} <= set(seen), "it was tried"
     assert [op.face.label for op in made.operations] == ["1"] and made.outcome == "complete"
+
+
+def test_what_waits_for_its_division_is_not_made_smaller_as_if_it_were_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: pieces by reach that were to be divided for their time lost a margin to what no axis reaches."""
+    divided_early(monkeypatch)
+    tried: list[Operation] = []
+    shrink = planner.shrink_refused
+    monkeypatch.setattr(planner, "shrink_refused",
+                        lambda targets, made, *more: (tried.extend(made), shrink(targets, made, *more))[1])
+    monkeypatch.setattr(rack_planning, "_in_pieces", lambda chain: True)
+    made = planned_bent()
+    assert made.outcome == "complete" and all(op.done for op in tried)
+    assert sum(areas(made).values()) == pytest.approx(bent().face(1).area, rel=1e-5)

@@ -251,19 +251,18 @@ class PlanningJob:
         made, cancelled = self._operations_of([target for some in targets.values() for target in some], progress)
         divided = {k: pieces for k, some in targets.items()
                    if self._serves_better(pieces := self._made_of_all(some, made), rows[k])}
+        kept = [one for k, op in enumerate(rows) for one in divided.get(k, () if _waits(op) else (op,))]
+        stopped = found.cancelled or cancelled
         late = [Target(op.face, op.orientation.axis, however_long=True) for k, op in enumerate(rows)
                 if _waits(op) and k not in divided]
-        if found.cancelled or cancelled:
-            late = []
-        whole, stopped = self._operations_of(late, progress)
-        kept: list[Operation] = []
-        for k, op in enumerate(rows):
-            again = [one for one in whole if one.face is op.face]
-            kept += divided.get(k) or again or ([] if _waits(op) else [op])
+        if late and not stopped:  # as without a division for time: whole, or by reach
+            undivided = self._plan_targets(late, (), progress, scene)
+            kept += undivided.operations
+            stopped = undivided.outcome == "cancelled"
         plan = replace(plan, operations=tuple(replace(op, number=k) for k, op in enumerate(kept, 1)))
         for why in found.faults.values():
             plan = with_fault(plan, why)
-        return replace(plan, outcome="cancelled") if found.cancelled or cancelled or stopped else plan
+        return replace(plan, outcome="cancelled") if stopped else plan
 
     @staticmethod
     def _made_of_all(targets: Sequence[Target], operations: Sequence[Operation]) -> list[Operation]:
@@ -403,7 +402,8 @@ class PlanningJob:
         pieces = {k: by_reach(targets[k].face, made[k], one, targets[k].others) for k, one in divisions.items()}
         done, cancelled = self._operations_of([piece for some in pieces.values() for piece in some], stage)
         if not cancelled:  # what the proof refuses is tried once more, a little smaller
-            pieces = {k: shrink_refused(some, done, made[k], divisions[k]) for k, some in pieces.items()}
+            tried = [op for op in done if not _waits(op)]
+            pieces = {k: shrink_refused(some, tried, made[k], divisions[k]) for k, some in pieces.items()}
             again = [piece for some in pieces.values() for piece in some if made_of(piece, done) is None]
             more, cancelled = self._operations_of(again, stage)
             done = (*done, *more)
