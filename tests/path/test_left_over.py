@@ -189,6 +189,24 @@ def test_what_may_stay_is_little_enough_for_the_judge(starts: tuple[float, ...],
     assert seen.share_within >= SHARE or not good, seen.zones
 
 
+def test_what_ends_of_passes_leave_along_a_narrow_band_is_told_to_the_judge() -> None:
+    """A band across a large plane of which passes cut one side: its ends are a good part of what they machine."""
+    size, wide, step = 120.0, 1.6, 0.4
+    band = np.array([[0, 0], [wide, 0], [size, size - wide], [size, size], [size - wide, size], [0, wide]]) / size
+    plane = ta.Face.from_bspline([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], degree=(1, 1))
+    face, ball = plane.trimmed((band,)), ta.Tool.ball(diameter=2, stickout=40)
+    y = np.arange(-step, size + step, step)
+    tips = np.repeat(np.stack([y - 2 * wide, y, np.zeros_like(y)], axis=1), 2, axis=0)
+    tips[1::2, 0] = y
+    up, kind = np.tile([0.0, 0.0, 1.0], (len(tips), 1)), np.tile([Motion.LINK, Motion.CUT], len(y)).astype(np.int8)
+    path = ToolPath(tips, tips, up, up, kind, np.arange(0, len(tips) + 1, 2))
+    zones = RestFinder(face, ball, 0.02).find(path)
+    declared = tuple(plane.trimmed(zone.loops) for zone in zones)
+    seen = judge(Judged("op", path.cl, path.axis, path.kind, ball.profile, (face,), 0.02, left=declared))
+    assert 0.3 * face.area < sum(zone.area for zone in zones) < 0.6 * face.area
+    assert seen.share_within >= SHARE, seen.zones
+
+
 def test_what_is_known_of_whole_cells_is_what_their_nodes_say(made: tuple[FaceProblem, ToolPath]) -> None:
     job, path = made
     high = Excess(job.worth.face, TOOL, path, FACTOR * SCALLOP)

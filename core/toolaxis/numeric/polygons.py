@@ -3,6 +3,7 @@
 The border counts as inside, holes' borders too, within `BORDER` of the greatest coordinates.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,17 @@ def signed_area(loop: Array) -> float:
     """
     x, y = loop[:, 0] - loop[0, 0], loop[:, 1] - loop[0, 1]
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def polygon_area(loops: Sequence[Array]) -> float:
+    """Area of a polygon with holes.
+
+    Parameters
+    ----------
+    loops : sequence of (m, 2) arrays
+        The outer one first, then the holes, either way around.
+    """
+    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
-from toolaxis.numeric.polygons import signed_area
+from toolaxis.numeric.polygons import polygon_area
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
 
@@ -94,8 +94,7 @@ class Lattice:
             column = self._clipped(self.face.outline, 0, i, i + 1)
             for j in range(self.cells[1]):
                 pieces = outer_with_holes(self._clipped(column, 1, j, j + 1))
-                found[i, j] = sum(2 * abs(signed_area(piece[0])) - sum(abs(signed_area(loop)) for loop in piece)
-                                  for piece in pieces)
+                found[i, j] = sum(map(polygon_area, pieces))
         return found / size
 
     @cached_property

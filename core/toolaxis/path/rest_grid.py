@@ -18,8 +18,8 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 Lines = tuple[Array, Array]
 
-#: Coarse cells along a side, fewest and most; the greatest number of fine ones along a side.
-_FEWEST, _COARSE, _FINE = 24, 72, 1500
+#: Coarse cells along a side, fewest and most.
+_FEWEST, _COARSE = 24, 72
 #: Pieces into which a loop is divided at least to measure it, and the most places along it.
 _PIECES, _PLACES = 64, 20_000
 #: Cells along a side whose lengths tell how long it is.
@@ -33,7 +33,8 @@ _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1]
 
 
 def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
-                whole: Callable[[Array, Array], Bools], between: Array | None = None) -> tuple[Lines, Array]:
+                whole: Callable[[Array, Array], Bools], between: Array | None = None,
+                most: int = 1500) -> tuple[Lines, Array]:
     """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
 
     Parameters
@@ -48,6 +49,8 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
         cells are above zero everywhere, (k,) bool; False where that is not known.
     between : (k, 2) array, optional
         Further parameters at which it is asked, those beside the face left out.
+    most : int
+        Fine cells along a side of the face at most: they are larger than asked for where it is longer.
 
     Returns
     -------
@@ -56,7 +59,7 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     values : (m, n) array
         -1 where it was not asked.
     """
-    coarse, parts = zip(*(_lines(face, axis, size) for axis in (0, 1)), strict=True)
+    coarse, parts = zip(*(_lines(face, axis, size, most) for axis in (0, 1)), strict=True)
     nodes = np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1)
     inside = face.contains(nodes.reshape(-1, 2)).reshape(nodes.shape[:2])
     above = np.zeros_like(inside)
@@ -151,14 +154,14 @@ def _go_on(above: Bools, cell: tuple[int, int], further: Bools) -> None:
             further[a, b] = True
 
 
-def _lines(face: Face, axis: int, size: float) -> tuple[Array, int]:
+def _lines(face: Face, axis: int, size: float, most: int) -> tuple[Array, int]:
     """Lines of coarse cells along one parameter, one cell farther than the face on both sides; fine cells in each."""
     low, high = face.bounds[2 * axis], face.bounds[2 * axis + 1]
     at = (np.linspace(*face.bounds[:2], _MEASURED + 1), np.linspace(*face.bounds[2:], _MEASURED + 1))
     nodes = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1)
     points = face.evaluate(nodes.reshape(-1, 2)).point.reshape(*nodes.shape[:2], 3)
     length = float(np.linalg.norm(np.diff(points, axis=axis), axis=-1).sum(axis=axis).max())
-    fine = float(np.clip(np.ceil(length / size), _FEWEST, _FINE))
+    fine = float(np.clip(np.ceil(length / size), _FEWEST, most))
     count = int(np.clip(np.ceil(fine / 8), _FEWEST, _COARSE))
     pitch = (high - low) / (count - 0.137)  # no line lies on an end of the range
     return np.asarray(low - 1.0637 * pitch + pitch * np.arange(count + 3)), int(np.ceil(fine / count))

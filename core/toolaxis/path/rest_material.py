@@ -14,7 +14,7 @@ from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_polygon, without
-from toolaxis.numeric.polygons import signed_area
+from toolaxis.numeric.polygons import polygon_area
 from toolaxis.path.rest_grid import sample_again, sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -37,6 +37,9 @@ OVERLOOKED = 5e-4
 #: Size of the cells that outline zones, as shares of the cutter's radius, of the narrowest strip that it may leave, and
 #: of a square as large as the face.
 _OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
+#: Fine cells along a side of a face at most, and as many as that where more of what is machined than this share lies in
+#: cells on the border of zones: pieces as narrow as the ends of strips add up there.
+_MOST, _FINEST, _ON_BORDER = 1500, 6000, 0.1
 _TRIES = 5
 #: Distances are told up to this, mm: only their signs are asked for.
 _FAR = 1e-3
@@ -226,12 +229,22 @@ class RestFinder:
         rows = _name_motions(starts, ends)
         motions = frozenset(rows)
         if self._last is None or not self._last.motions <= motions:
-            size = _size(self.face, self.tool, self.scallop)
-            return _RestSeen(motions, *sample_grid(self.face, high, size, high.whole, self.between))
+            return _RestSeen(motions, *self._sample(high))
         new = np.array([row not in self._last.motions for row in rows])
         fresh = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop, (starts[new], ends[new]))
         lines, values = self._last.lines, self._last.values
         return _RestSeen(motions, lines, sample_again(lines, values, fresh, fresh.whole))
+
+    def _sample(self, high: Excess) -> tuple[tuple[Array, Array], Array]:
+        """A grid as fine as the border of the zones asks for, and what is left at its nodes."""
+        face, size = self.face, _size(self.face, self.tool, self.scallop)
+        lines, values = sample_grid(face, high, size, high.whole, self.between, _MOST)
+        on_border = _share_on_border(face, lines, values)
+        if max(values.shape) < _MOST or on_border <= _ON_BORDER:
+            return lines, values
+        self.progress.check()
+        most = min(round(_MOST * on_border / _ON_BORDER), _FINEST)
+        return sample_grid(face, high, size, high.whole, self.between, most)
 
     def _zones_in(self, found: tuple[Array, ...], path: ToolPath, nodes: Array) -> tuple[Zone, ...]:
         """The zones within loops, the largest first, without what is too small or too shallow to be told."""
@@ -272,7 +285,7 @@ def _areas(face: Face, zones: Sequence[Face]) -> list[float]:
     """Areas of zones of a face, mm^2: those of crumbs from the mean area per parameter along their borders."""
     if not zones:
         return []
-    sizes = [abs(signed_area(zone.trims[0])) - sum(abs(signed_area(hole)) for hole in zone.trims[1:]) for zone in zones]
+    sizes = [polygon_area(zone.trims) for zone in zones]
     u0, u1, v0, v1 = face.bounds
     d = face.evaluate(np.concatenate([zone.trims[0] for zone in zones]))
     first = np.cumsum([0, *(len(zone.trims[0]) for zone in zones[:-1])])
@@ -372,6 +385,16 @@ def _size(face: Face, tool: Tool, scallop: float) -> float:
 def _halvings(face: Face, tool: Tool, scallop: float) -> int:
     """How often the edges of fine cells are halved to find the border of a zone."""
     return max(1, int(np.ceil(np.log2(_size(face, tool, scallop) / _CLOSE))))
+
+
+def _share_on_border(face: Face, lines: tuple[Array, Array], values: Array) -> float:
+    """Area of the cells on the border of what is above zero, as a share of what of the face is not above zero."""
+    above = values > 0
+    corners = above[1:, 1:].astype(np.int8) + above[1:, :-1] + above[:-1, 1:] + above[:-1, :-1]
+    cell = float(np.diff(lines[0]).mean() * np.diff(lines[1]).mean())
+    border = cell * np.count_nonzero((corners > 0) & (corners < 4))
+    machined = sum(map(polygon_area, outer_with_holes(face.outline))) - cell * np.count_nonzero(above)
+    return float(border / max(machined, cell))
 
 
 def _above(lines: tuple[Array, Array], values: Array) -> Array:

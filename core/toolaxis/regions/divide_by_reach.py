@@ -13,7 +13,7 @@ from toolaxis.feasibility.surroundings import MARGIN, SKIN
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
-from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.numeric.polygons import inside, polygon_area, signed_area, slabs
 from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
@@ -451,11 +451,11 @@ class _Borders:
             found, rest = self._cut_out(rest, held, ~left)
             for loops in found:
                 inner, margin = self._cut_out(loops, core & self._inside(loops), ~left)
-                smaller = max(inner, key=_area, default=())
+                smaller = max(inner, key=polygon_area, default=())
                 for other in inner:
                     margin = margin if other is smaller else _unite(margin, other)
                 pieces.append(ReachPiece(loops, reach.axes[number], smaller, margin))
-        pieces.sort(key=lambda one: -_area(one.loops))
+        pieces.sort(key=lambda one: -polygon_area(one.loops))
         return ReachDivision(tuple(pieces), tuple(_parts(rest)), tried)
 
     def _cut_out(self, loops: Loops, held: Bools, taken: Bools) -> tuple[list[Loops], Loops]:
@@ -517,9 +517,6 @@ def _parts(loops: Loops) -> list[Loops]:
     if not loops:
         return []
     whole = sum(abs(signed_area(loop)) for loop in loops)
-    kept = (part for part in outer_with_holes(loops) if _area(part) > _NOTHING * whole)
+    kept = (part for part in outer_with_holes(loops) if polygon_area(part) > _NOTHING * whole)
     return [(part[0], *(hole for hole in part[1:] if abs(signed_area(hole)) > _NOTHING**2 * whole)) for part in kept]
 
-
-def _area(loops: Loops) -> float:
-    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])

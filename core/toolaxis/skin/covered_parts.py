@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.polygon_boolean import divide_nearly
-from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.numeric.polygons import inside, polygon_area, slabs
 from toolaxis.skin.seen_face import SeenFace
 
 Array = NDArray[np.float64]
@@ -49,17 +49,6 @@ def covered_parts(seen: Sequence[SeenFace]) -> tuple[tuple[Loops, ...], ...]:
 def _parts_under(one: SeenFace, other: SeenFace) -> list[Loops]:
     """The parts of a face, cut out of its outline, above which another one lies."""
     return [part for part in _common_parts(one, other) if _height_above(part, other, one) > _ABOVE]
-
-
-def polygon_area(part: Loops) -> float:
-    """Area of a polygon in the plane, mm^2.
-
-    Parameters
-    ----------
-    part : tuple of (m, 2) arrays
-        Loops, the outer one first, then its holes.
-    """
-    return abs(signed_area(part[0])) - sum(abs(signed_area(hole)) for hole in part[1:])
 
 
 def places_in(part: Loops, count: int = _LOOKED) -> Array:

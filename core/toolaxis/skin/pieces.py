@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
 from toolaxis.numeric.polygon_boolean import divide_nearly, without
-from toolaxis.numeric.polygons import signed_area, stations, walk
+from toolaxis.numeric.polygons import polygon_area, signed_area, stations, walk
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joining.joined_surface import name_of
-from toolaxis.skin.covered_parts import Loops, polygon_area
+from toolaxis.skin.covered_parts import Loops
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.view_surface import ViewSurface
 

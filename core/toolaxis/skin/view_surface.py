@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
-from toolaxis.numeric.polygons import stations, walk
+from toolaxis.numeric.polygons import polygon_area, stations, walk
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives
 from toolaxis.skin.continuation import Continuation, heights_of
-from toolaxis.skin.covered_parts import Loops, places_in, polygon_area
+from toolaxis.skin.covered_parts import Loops, places_in
 from toolaxis.skin.faces_in_view import FacesInView
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.tangent_planes import TangentPlanes, heights_beyond
