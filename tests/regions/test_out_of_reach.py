@@ -80,8 +80,17 @@ def test_the_middle_of_a_deep_slot_is_out_of_reach_for_the_holder(slot: Part) ->
     assert 400 < found.area < 22 * 27 + 60 * 2 and found.by_corner < 0.5 * found.area
     assert found.area + found.reached <= side.area * (1 + 1e-9)
     assert contradictions(slot, side, [BALL], found) == 0
-    longer = ta.Tool.ball(4, stickout=60, holder=HOLDER)
-    assert prove_out_of_reach(side, [longer], ReachScene.of(slot)).area < 0.06 * side.area, "the corner at the floor"
+
+
+def test_what_lies_beside_a_sharp_edge_is_out_of_reach_as_far_as_the_corner_is_round(slot: Part) -> None:
+    """A ball of radius 2 on the wall comes nearer to the floor than the 0.1 mm that it keeps up to 2.1 mm above it."""
+    side = next(face for face in slot.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 1], -3.0))
+    long = ta.Tool.ball(4, stickout=60, holder=HOLDER), ta.Tool.torus(6, 2.5, stickout=60, holder=HOLDER)
+    found = prove_out_of_reach(side, long, ReachScene.of(slot))
+    assert 0.96 * 2.1 * 60 < found.by_corner <= 2.1 * 60
+    assert found.area == found.by_corner and found.area + found.reached <= side.area * (1 + 1e-9)
+    flat = ta.Tool.flat(4, stickout=60, holder=HOLDER)
+    assert prove_out_of_reach(side, (*long, flat), ReachScene.of(slot)).by_corner == 0.0, "its corner is sharp"
 
 
 def test_of_a_sliver_that_no_cell_has_a_place_of_nothing_is_claimed(pocket: Part) -> None:
@@ -107,7 +116,7 @@ def test_a_longer_proof_finds_no_less_and_a_short_one_claims_little(slot: Part) 
     side = next(face for face in slot.faces if np.allclose(face.evaluate(face.grid(3, 3)).point[:, 1], -3.0))
     scene = ReachScene.of(slot)
     areas = [prove_out_of_reach(side, [BALL], scene, most).area for most in (1000, 100_000, 1_000_000)]
-    assert areas == sorted(areas) and areas[0] == 0.0
+    assert areas == sorted(areas) and areas[0] < 0.6 * areas[-1]
 
 
 def block_with_pits(seed: int) -> Part:

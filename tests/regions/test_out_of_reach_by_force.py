@@ -40,7 +40,7 @@ def claims(pit: Part) -> list[Claim]:
 def test_no_tool_reaches_what_is_claimed_of_a_pit(pit: Part, claims: list[Claim]) -> None:
     attack, rng = Attack(pit, TOOLS, axes=AXES), np.random.default_rng(SEED)
     places = [place for claim in claims if claim.area > 0 for place in draw_places(claim, 2, rng)]
-    assert sum(claim.area > 0 for claim in claims) == 5, "the four roundings, and the lower half of a wall"
+    assert sum(claim.area > 0 for claim in claims) == 9, "the pit: its roundings, and what lies beside its sharp edges"
     for place in places:
         assert attack.reach(place).lack > 0, (place.face.label, place.point)
 

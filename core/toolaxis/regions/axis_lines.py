@@ -7,7 +7,6 @@ whether all lines along a cone of axes are met.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,8 @@ from numpy.typing import NDArray
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.progress import breathe
 from toolaxis.regions.axis_cones import AxisCones, first_cones, shift_of_axis
-from toolaxis.regions.rectangles import FaceRectangles, first_rectangles, halve_rectangles, is_as_measured
+from toolaxis.regions.cell_levels import CellLevels
+from toolaxis.regions.rectangles import FaceRectangles, first_rectangles
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.solid_grid import SolidGrid
 from toolaxis.regions.solid_kernel import ConeLines, sweep_lines
@@ -145,96 +145,21 @@ class AxisLines(NamedTuple):
         most : int
             Cones of axes that are looked along for cells of one size.
         """
-        levels, grid = _Levels(face), scene.solid.grid
+        levels, grid = CellLevels(face, first_rectangles(face)), scene.solid.grid
         rack = None if grid is None else lines_of_rack(tools, required, grid.away)
         if grid is None or rack is None:
-            return levels.gather()
+            return AxisLines(*levels.gather())
         shadow = _Shadow(rack, scene, grid, most)
-        while levels.reach > _WIDE and levels.halve():
+        while levels.reach > _WIDE and levels.halve(_MOST_CELLS):
             pass
         # Most faces are open to the sky: the middles of their cells tell that at once.
         levels.keep_beside(shadow.covers(levels.cells.shrink()))
         for _ in range(_HALVINGS):
-            gained = levels.halve() and levels.claim(shadow.covers(levels.cells))
-            if not gained:
+            if not levels.halve(_MOST_CELLS):
                 break
-        return levels.gather()
-
-
-@dataclass(eq=False)
-class _CellSize:
-    """Cells of one size.
-
-    parent : (n,) array of int, of which cell of the level before each is a quarter;  asked, proven : (n,) arrays of
-    bool, those of whose quarters more may be proven, and those that are.
-    """
-
-    cells: FaceRectangles
-    parent: Indices
-    asked: Bools
-    proven: Bools
-
-    @staticmethod
-    def make(cells: FaceRectangles, parent: Indices) -> "_CellSize":
-        """Cells of which nothing is known."""
-        return _CellSize(cells, parent, np.ones(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool))
-
-
-class _Levels:
-    """Cells of a face, halved again and again."""
-
-    def __init__(self, face: Face) -> None:
-        cells = first_rectangles(face)
-        self._face, self._levels = face, [_CellSize.make(cells, np.zeros(len(cells), dtype=np.int64))]
-
-    @property
-    def cells(self) -> FaceRectangles:
-        """The smallest ones."""
-        return self._levels[-1].cells
-
-    @property
-    def reach(self) -> float:
-        """How far most of the smallest cells reach, mm."""
-        return float(np.median(self.cells.off)) if len(self.cells) else 0.0
-
-    def halve(self) -> bool:
-        """Halve the smallest cells of which more may be proven; whether there are any, and not too many."""
-        last = self._levels[-1]
-        rows = np.flatnonzero(last.asked & ~last.proven)
-        if not len(rows) or 4 * len(rows) > _MOST_CELLS:
-            return False
-        cells, quarter = halve_rectangles(self._face, last.cells.pick(rows))
-        self._levels.append(_CellSize.make(cells, rows[quarter]))
-        return True
-
-    def keep_beside(self, found: Bools) -> None:
-        """Ask no more of the smallest cells but those found (n,), and those that are quarters of one with them."""
-        last = self._levels[-1]
-        some = np.zeros(last.parent.max(initial=0) + 1, dtype=bool)
-        some[last.parent[found]] = True
-        last.asked &= some[last.parent]
-
-    def claim(self, covered: Bools) -> bool:
-        """Take those of the smallest cells for proven that are covered (n,); whether enough are to try smaller ones."""
-        last = self._levels[-1]
-        rows = np.flatnonzero(covered)
-        last.proven[rows] = is_as_measured(self._face, last.cells.pick(rows))
-        area = last.cells.area
-        return float(area[last.proven].sum()) >= _WORTH * float(area.sum())
-
-    def gather(self) -> AxisLines:
-        """Proven cells of all sizes, and the largest ones with nothing proven in them."""
-        levels = self._levels
-        some = [level.proven.copy() for level in levels]
-        for upper, lower, found in zip(some[-2::-1], levels[:0:-1], some[:0:-1], strict=True):
-            upper[lower.parent[found]] = True
-        left = []
-        asked = np.ones(len(levels[0].cells), dtype=bool)
-        for k, level in enumerate(levels):
-            left.append(level.cells.pick(asked & ~some[k]))
-            if k + 1 < len(levels):
-                asked = (asked & some[k] & ~level.proven)[levels[k + 1].parent]
-        return AxisLines([level.cells.pick(level.proven) for level in levels], FaceRectangles.join(left))
+            if levels.claim(shadow.covers(levels.cells)) < _WORTH * float(levels.cells.area.sum()):
+                break
+        return AxisLines(*levels.gather())
 
 
 class _Cone(NamedTuple):

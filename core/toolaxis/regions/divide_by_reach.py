@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import MARGIN, SKIN
 from toolaxis.numeric.clipping import outer_with_holes
-from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
 from toolaxis.numeric.polygons import inside, polygon_area, signed_area, slabs
-from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import NO_PROGRESS, Progress
+from toolaxis.regions.cell_borders import CellBorders
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import fits_hollows
 from toolaxis.regions.reach_screen import ReachScreen, seen_cells
@@ -59,13 +58,6 @@ _APRON = 8.0
 _SMALLER = 2.0
 #: What a piece that another one cuts off holds at least, in shares of the least area of a sub-surface.
 _CRUMB = 0.25
-#: How far values fade at the edge of what is reached, in cells, and what is left of them where it ends: the next is
-#: taken where corners of the border would lie on that of the face.
-_BLUR, _EDGES = 0.8, (0.15, 0.17, 0.13)
-#: Cells by which borders run on into other sub-surfaces, before what these hold is taken off.
-_OVER = 3
-#: How far corners that are left out lie beside the border, in cells.
-_STRAIGHT = 0.3
 #: Share of a polygon's area in u and v below which a part of it is nothing.
 _NOTHING = 1e-6
 
@@ -421,14 +413,9 @@ class _Borders:
     """
 
     def __init__(self, reach: _Reach) -> None:
-        from scipy.ndimage import distance_transform_edt
-
         self._reach, self._cells = reach, reach.cells
-        on = reach.spread_out(np.ones(len(reach.cells), dtype=bool))
-        self._nearest = tuple(distance_transform_edt(~on, return_distances=False, return_indices=True))
         lines = [(line[1:] + line[:-1]) / 2 for line in Lattice(reach.cells.face, reach.cells.shape).lines]
-        self._size = np.array([np.median(np.diff(line)) for line in lines])
-        self._lines = [_longer(line) for line in lines]
+        self._borders = CellBorders(reach.spread_out(np.ones(len(reach.cells), dtype=bool)), (lines[0], lines[1]))
 
     def divide(self, numbers: Sequence[int], tried: int) -> ReachDivision:
         """The face divided.
@@ -462,9 +449,9 @@ class _Borders:
         """Pieces of a polygon around cells, and the rest of it, crumbs included."""
         if not held.any():
             return [], loops
-        for edge in _EDGES:
+        for around in self._borders.around(self._reach.spread_out(held), self._reach.spread_out(taken)):
             with suppress(InvalidInput):
-                both, rest = divide_nearly(loops, self._around(held, taken, edge))
+                both, rest = divide_nearly(loops, around)
                 break
         else:
             return [], loops
@@ -481,31 +468,6 @@ class _Borders:
         if not loops:
             return np.zeros(len(self._cells), dtype=bool)
         return np.asarray(inside(slabs(loops), self._cells.uv))
-
-    def _around(self, held: Bools, taken: Bools, edge: float) -> Loops:
-        """Loops in u and v around cells; where the face ends there, or others begin, they run beyond it.
-
-        Parameters
-        ----------
-        held : (n,) array of bool
-        taken : (n,) array of bool
-            Cells that belong to other sub-surfaces.
-        edge : float
-            What is left of values, which fade from 1 to -1, at the loops.
-        """
-        from scipy.ndimage import binary_dilation, gaussian_filter
-
-        own = self._reach.spread_out(held)
-        own = binary_dilation(own, iterations=_OVER, mask=self._reach.spread_out(held | taken))
-        value = np.pad(np.where(own, 1.0, -1.0)[self._nearest], 2, mode="edge")
-        loops = contours(gaussian_filter(value, _BLUR, mode="nearest") - edge, (self._lines[0], self._lines[1]))
-        return tuple(loop[simplify_loop(loop / self._size, _STRAIGHT)] for loop in loops)
-
-
-def _longer(line: Array) -> Array:
-    """Parameters with two more on either side."""
-    before, behind = line[1] - line[0], line[-1] - line[-2]
-    return np.concatenate([line[0] - before * np.array([2.0, 1.0]), line, line[-1] + behind * np.array([1.0, 2.0])])
 
 
 def _unite(loops: Loops, beside: Loops) -> Loops:

@@ -7,7 +7,6 @@ them.  What is not decided is halved: the cone or the cell, whichever leaves mor
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,9 +17,10 @@ from toolaxis.numeric.vectors import angle_between
 from toolaxis.progress import breathe
 from toolaxis.regions.axis_cones import CellCones, first_cones, shift_of_axis
 from toolaxis.regions.axis_lines import AxisLines
-from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTips, ReachTool, find_blocked
+from toolaxis.regions.corner_gouges import CornerBall, CornerGouges, smallest_ball
 from toolaxis.regions.rectangles import FaceRectangles, halve_rectangles, is_as_measured
 from toolaxis.regions.scene import ReachScene
+from toolaxis.regions.tool_slices import ToolSearch, ToolSlices, cut_into_slices, take_off
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 
@@ -34,14 +34,9 @@ _HALVINGS, _MOST_CELLS = 4, 6000
 _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
 #: Pairs in place of which one more cone of lines may be looked along, and how many may be in any case.
 _PAIRS_FOR_CONE, _FEWEST_CONES = 150, 500
-#: A part of a tool is cut into slices whose upper end is so many times as high as the lower one; they overlap by half.
-#: Height from which on slices grow, mm.
-_SLICE, _LOWEST = 4.0, 2.0
-#: Pairs go together whose tools are off by distances, mm, from the least on, and angles that differ less than this.
-_ALIKE, _LEAST = 1.25, 1e-4
-#: Height of the ball that stands for a cutter's corner, in its radius: a little more than its lower half.
-_HALF = 1.0001
-_AT_ONCE = 4096
+#: Pairs in place of which one cell may be looked at for corners alone, and how many may be in any case; largest ones of
+#: what is left then that are paired with cones.
+_PAIRS_FOR_CELL, _FEWEST_CELLS, _MOST_FIRST = 15, 5000, 400
 
 
 class OutOfReach(NamedTuple):
@@ -88,14 +83,18 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     """
     required = scene.required(face, steps_count=False)  # the exact check does not charge steps to the cutter
     lines = AxisLines.look(face, tools, required, scene, max(_FEWEST_CONES, most_pairs // _PAIRS_FOR_CONE))
-    cells = lines.left
-    proofs = _proofs(tools, scene, required, len(cells))
-    proven = float(sum(some.area.sum() for some in lines.proven))
-    by_corner = reached = 0.0
-    found = [some.rectangles for some in lines.proven]
+    proofs = _proofs(tools, scene, required)
+    corners = CornerGouges.look(face, [proof.ball for proof in proofs], lines.left,
+                                max(_FEWEST_CELLS, most_pairs // _PAIRS_FOR_CELL))
+    cells = corners.left.pick(np.sort(np.argsort(-corners.left.area, kind="stable")[:_MOST_FIRST]))
+    for proof in proofs:
+        proof.begin(len(cells))
+    proven = float(sum(some.area.sum() for some in (*lines.proven, *corners.proven)))
+    by_corner, reached = float(sum(some.area.sum() for some in corners.proven)), 0.0
+    found = [some.rectangles for some in (*lines.proven, *corners.proven)]
     tried = 0
     for halving in range(_HALVINGS + 1):
-        surely, narrow = _smallest_corner_gouges(proofs, cells)
+        surely, narrow = _smallest_gouges(proofs, cells)
         met = np.zeros(len(cells), dtype=bool)
         open_ = narrow & ~surely
         for proof in proofs:
@@ -116,34 +115,21 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
         for proof in proofs:
             proof.hand_down(left, parent)
     whole = face.area
-    return OutOfReach(min(proven, whole), min(by_corner, whole), min(reached, whole), np.concatenate(found))
+    proven = min(proven, whole)
+    return OutOfReach(proven, min(by_corner, proven), min(reached, whole - proven), np.concatenate(found))
 
 
-@dataclass(frozen=True, eq=False)
-class _Slices:
-    """A tool in pieces.
-
-    pieces : (k, 8) array;  required : (faces + 1, k) array, mm, what each has to keep;  arm : (k,) array, mm, greatest
-    distance of each from the middle of the tool's corner circle.
-    """
-
-    pieces: Array
-    required: Array
-    arm: Array
+def _smallest_gouges(proofs: Sequence["_Proof"], cells: FaceRectangles) -> tuple[Bools, Bools]:
+    """Where the smallest ball of all tools gouges, as `CornerBall.gouges`."""
+    ball = smallest_ball([proof.ball for proof in proofs])
+    return (np.zeros(len(cells), dtype=bool),) * 2 if ball is None else ball.gouges(cells)
 
 
-def _proofs(tools: Sequence[Tool], scene: ReachScene, required: Array, cells: int) -> list["_Proof"]:
+def _proofs(tools: Sequence[Tool], scene: ReachScene, required: Array) -> list["_Proof"]:
     """A proof for each tool, the slim ones first: what they reach need not be asked of the others."""
-    room = ReachRoom.make()
+    search = ToolSearch(scene)
     slim = sorted(tools, key=lambda tool: (tool.radius, tool.corner_radius))
-    return [_Proof(scene, tool, required, room, cells) for tool in slim]
-
-
-def _smallest_corner_gouges(proofs: Sequence["_Proof"], cells: FaceRectangles) -> tuple[Bools, Bools]:
-    """Where the ball in the smallest corner of all tools gouges, whatever the axis, as `_Proof.corner_gouges`."""
-    if not proofs:
-        return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
-    return min(proofs, key=lambda proof: proof.ball).corner_gouges(cells)
+    return [_Proof(scene, tool, required, search) for tool in slim]
 
 
 class _Proof:
@@ -151,40 +137,26 @@ class _Proof:
 
     Attributes
     ----------
+    ball : CornerBall
     pairs : CellCones
-        The cells and cones of which it is not known whether the tool may touch the one with the other.
+        The cells and cones of which it is not known whether the tool may touch the one with the other; none before
+        `begin`.
     """
 
-    def __init__(self, scene: ReachScene, tool: Tool, required: Array, room: ReachRoom, cells: int) -> None:
-        self._scene, self._tool, self._required, self._room = scene, tool, required, room
+    def __init__(self, scene: ReachScene, tool: Tool, required: Array, search: ToolSearch) -> None:
+        self._scene, self._tool, self._search = scene, tool, search
+        self.ball = CornerBall(tool, search, required, scene.allowance)
         whole = scene.tool(tool, required)
-        self._plain = _Slices(whole.pieces, whole.limits[:, whole.pieces[:, 7].astype(int)],
-                              np.zeros(len(whole.pieces)))
-        self._slices = _cut_into_slices(whole, tool.corner_radius)
-        self._core = _cut_into_slices(_take_off(whole, tool.flat_radius), tool.corner_radius)
+        self._plain = ToolSlices(whole.pieces, whole.limits[:, whole.pieces[:, 7].astype(int)],
+                                 np.zeros(len(whole.pieces)))
+        self._slices = cut_into_slices(whole, tool.corner_radius)
+        self._core = cut_into_slices(take_off(whole, tool.flat_radius), tool.corner_radius)
+
+    def begin(self, cells: int) -> None:
+        """Pair so many cells with cones over the whole sphere."""
         cones = first_cones()
         cell, cone = (side.ravel() for side in np.indices((cells, len(cones))))
         self.pairs = CellCones(cell, cones.pick(cone))
-
-    @property
-    def ball(self) -> float:
-        """Radius of the ball that the tool holds at its contact, mm."""
-        tool = self._tool
-        return tool.corner_radius if tool.flute_length >= 2 * tool.corner_radius else 0.0
-
-    def corner_gouges(self, cells: FaceRectangles) -> tuple[Bools, Bools]:
-        """Where the ball in the tool's corner gouges at every contact of a cell, and where it does in the middle."""
-        radius = self.ball
-        if radius <= 0 or not len(cells):
-            return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
-        ball = _Slices(np.array([[0.0, radius, 1.0, 0.0, 0.0, _HALF * radius, radius, 0.0]]), self._required[:, :1],
-                       np.zeros(1))
-        places, none = cells.point + self._scene.allowance * cells.normal, np.zeros(len(cells))
-        middle = self._blocked(ball, none, none, places, cells.normal)
-        at = np.flatnonzero(middle)
-        surely = middle.copy()
-        surely[at] = self._blocked(ball, none[at], self._corner_off(cells)[at], places[at], cells.normal[at])
-        return surely, middle
 
     def close(self, cells: FaceRectangles, asked: Bools, met: Bools, most: int) -> int:
         """Leave those pairs of which nothing is known; note in met (n,) the cells that the tool reaches in the middle.
@@ -203,7 +175,7 @@ class _Proof:
         int
             How many pairs were looked at.
         """
-        surely, narrow = self.corner_gouges(cells)
+        surely, narrow = self.ball.gouges(cells)
         waiting = self.pairs.pick(~surely[self.pairs.cell])
         now = asked & ~narrow
         kept, waiting = waiting.pick(~now[waiting.cell]), waiting.pick(now[waiting.cell])
@@ -225,16 +197,16 @@ class _Proof:
         axes, radius = pairs.cones.middle, pairs.cones.radius
         places = tips(cells.point[pairs.cell], cells.normal[pairs.cell], axes, self._tool, self._scene.allowance)
         off = self._off(cells, pairs, axes, radius)
-        blocked = self._blocked(self._slices, radius, off, places, axes)
+        blocked = self._search.blocked(self._slices, radius, off, places, axes)
         if self._tool.flat_radius > 0:
             rest = np.flatnonzero(~blocked)
             blocked[rest] = self._core_blocked(cells, pairs.pick(rest), axes[rest], radius[rest])
         open_ = np.flatnonzero(~blocked)
         pairs, places, axes, radius = pairs.pick(open_), places[open_], axes[open_], radius[open_]
         none = np.zeros(len(axes))
-        free = ~self._blocked(self._plain, none, none, places, axes)
+        free = ~self._search.blocked(self._plain, none, none, places, axes)
         met[pairs.cell[free & self._is_seen(cells, pairs, axes)]] = True
-        own = self._corner_off(cells)[pairs.cell]
+        own = self.ball.off(cells)[pairs.cell]
         return pairs, (radius * (self._tool.stickout or self._tool.height) >= own) & (radius > _NARROW)
 
     def _core_blocked(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Bools:
@@ -242,7 +214,7 @@ class _Proof:
         corner = self._tool.corner_radius
         normal = cells.normal[pairs.cell]
         places = cells.point[pairs.cell] + (corner + self._scene.allowance) * normal - corner * axes
-        return self._blocked(self._core, radius, self._corner_off(cells)[pairs.cell], places, axes)
+        return self._search.blocked(self._core, radius, self.ball.off(cells)[pairs.cell], places, axes)
 
     def hand_down(self, left: Indices, parent: Indices) -> None:
         """Give the pairs of cells to their quarters.
@@ -272,86 +244,10 @@ class _Proof:
         limits = self._scene.limits
         return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
 
-    def _corner_off(self, cells: FaceRectangles) -> Array:
-        """How far the middle of the corner's ball lies from that at the contact of its cell, at most, (n,) mm."""
-        radius = self._tool.corner_radius + self._scene.allowance
-        return np.asarray(cells.off + 2 * radius * np.sin(cells.turn / 2))
-
     def _off(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Array:
         """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm."""
-        off, flat = self._corner_off(cells)[pairs.cell], self._tool.flat_radius
+        off, flat = self.ball.off(cells)[pairs.cell], self._tool.flat_radius
         if flat <= 0:
             return off
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         return np.asarray(off + shift_of_axis(flat, angle, cells.turn[pairs.cell] + radius, radius))
-
-    def _blocked(self, slices: _Slices, turn: Array, off: Array, places: Array, axes: Array) -> Bools:
-        """Whether a tool comes nearer to something than it may by more than it may be off.
-
-        Parameters
-        ----------
-        slices : _Slices
-        turn, off : (n,) arrays
-            By how much the axis may be off, rad, and the middle of the corner circle, mm.
-        places, axes : (n, 3) arrays
-            Tips, mm, and axes.
-        """
-        blocked = np.zeros(len(off), dtype=bool)
-        level = [np.ceil(np.log(np.maximum(one, _LEAST) / _LEAST) / np.log(_ALIKE)).astype(int) for one in (turn, off)]
-        key = level[0] * (level[1].max(initial=0) + 1) + level[1]
-        for one in np.unique(key):
-            rows = np.flatnonzero(key == one)
-            less = float(off[rows].max()) + 2 * np.sin(float(turn[rows].max()) / 2) * slices.arm
-            for first in range(0, len(slices.pieces), MOST_PIECES):
-                some = slice(first, first + MOST_PIECES)
-                pieces = slices.pieces[some].copy()
-                pieces[:, 7] = np.arange(len(pieces))
-                tool = ReachTool.of(pieces, np.ascontiguousarray(slices.required[:, some] - less[some]))
-                rest = rows[~blocked[rows]]
-                blocked[rest] = self._find(tool, places[rest], axes[rest])
-        return blocked
-
-    def _find(self, tool: ReachTool, places: Array, axes: Array) -> Bools:
-        found = np.zeros(len(places), dtype=bool)
-        for first in range(0, len(places), _AT_ONCE):
-            breathe()
-            some = slice(first, first + _AT_ONCE)
-            find_blocked(self._scene.tree, tool, ReachTips.of(places[some], axes[some]), self._room, found[some])
-        return found
-
-
-def _take_off(whole: ReachTool, radius: float) -> ReachTool:
-    """A tool with a smaller radius all along; what is no wider than that goes."""
-    pieces = whole.pieces - np.array([radius, 0.0, 0.0, 0.0, 0.0, 0.0, radius, 0.0])
-    return ReachTool.of(pieces[(pieces[:, 0] >= 0) & (pieces[:, 6] > 0)], whole.limits)
-
-
-def _cut_into_slices(whole: ReachTool, corner: float) -> _Slices:
-    """A tool with what holds it, in slices that overlap by half."""
-    pieces = np.array([part for piece in whole.pieces for part in _slice_piece(piece, corner)])
-    # Seen from the middle of the corner circle; a slice is widest at its upper end, at its lower one, or in its arc.
-    wide = np.maximum(pieces[:, 6], pieces[:, 0] + pieces[:, 1])
-    high = np.abs(pieces[:, 4:6] - corner).max(axis=1)
-    return _Slices(pieces, whole.limits[:, pieces[:, 7].astype(int)], np.hypot(wide, high))
-
-
-def _slice_piece(piece: Array, corner: float) -> list[Array]:
-    """A convex piece, its straight side in slices."""
-    flat, radius, cosine, sine, low, top, rim, component = piece
-    straight = max(low + radius * (1 - sine), low + 1.5 * radius)
-    if straight >= top:
-        return [piece]
-
-    def side(z: float) -> float:
-        """Radius at a height."""
-        return float(rim - (top - z) * sine / cosine)
-
-    found = []
-    if radius > 0:
-        found.append(np.array([flat, radius, cosine, sine, low, straight, side(straight), component]))
-    z, end = straight, straight
-    while end < top:
-        end = min(_SLICE * max(z, corner, _LOWEST), top)
-        found.append(np.array([side(z), 0.0, cosine, sine, z, end, side(end), component]))
-        z = np.sqrt(_SLICE) * max(z, corner, _LOWEST)
-    return found

@@ -49,6 +49,7 @@ from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
 from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds
+from toolaxis.regions.machined_beside import take_machined_beside
 from toolaxis.regions.scene import ReachScene
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.face_problem import task as search_task
@@ -411,8 +412,18 @@ class PlanningJob:
         rows: list[Operation] = []
         for k, op in enumerate(made):
             own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
-            rows += own or [failed.get(k, op)]
+            rows += self._with_machined_beside(own) or [failed.get(k, op)]
         return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
+
+    def _with_machined_beside(self, pieces: Sequence[Operation]) -> list[Operation]:
+        """Operations of the pieces of one face, larger by what their passes machine of those without an axis."""
+        inputs = self.inputs
+        if inputs.greatest_step_over > 0 or inputs.tolerance.least_lean > 0:  # not known beyond the last pass
+            return list(pieces)
+        waiting = [op for op in pieces if _waits(op)]
+        made = [op for op in pieces if not _waits(op)]
+        return [*(take_machined_beside(made, inputs.scallop, inputs.allowance_of(made[0].face)) if made else ()),
+                *waiting]
 
     def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""

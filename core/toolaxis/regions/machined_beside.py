@@ -1,0 +1,132 @@
+"""What passes machine beside the sub-surfaces that they were laid for: nobody has to come there again.
+
+Where a face is divided by reach, its sub-surfaces end before what their axes do not reach, and what lies between them
+is left.  Passes run out beyond the border of a sub-surface, and the last strip is wider than what is left of it: much
+of what lies between is machined all the same.
+"""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
+from toolaxis.partition.uv_grid import Lattice
+from toolaxis.path.rest_material import Excess
+from toolaxis.plan.operation import Operation
+from toolaxis.regions.cell_borders import CellBorders
+from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Loops = tuple[Array, ...]
+
+#: Size of the cells in which it is looked, in widths of the narrowest strip that a cutter may leave, how many of them a
+#: rest has about at most, and how many there are along a side, those beside it included.
+_SIZE, _MOST, _ALONG = 1 / 10, 80_000, (12, 3000)
+#: Connected cells fewer than this are not worth a border.
+_FEWEST = 12
+
+
+def take_machined_beside(operations: Sequence[Operation], scallop: float, allowance: float) -> list[Operation]:
+    """Operations on pieces of one face, those with passes on larger ones by what they machine of pieces without any.
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+        Of sub-surfaces that do not overlap, some of them without an axis.
+    scallop : float
+        Limit of the scallop height, mm.
+    allowance : float
+        Stock left on the face, mm.
+
+    Returns
+    -------
+    list of Operation
+        In their order; those of which nothing is left are missing.
+
+    Notes
+    -----
+    What is machined is told in the middles of small cells: of each that is taken, and of all beside it.
+
+    **Properties**: 1. areas of the sub-surfaces add up as before, and none of them overlaps another one.
+    """
+    found = dict(enumerate(operations))
+    done = [k for k, op in found.items() if op.path is not None]
+    rests = [k for k, op in found.items() if not op.done and not op.failed] if done else []
+    for k in rests:
+        rest = _Rest(found[k].face, min(_strip(found[j].tool, scallop) for j in done))
+        for j in done:
+            gained = rest.take(found[j], allowance + scallop)
+            if gained:
+                found[j] = _on(found[j], unite_polygons(found[j].face.outline, gained))
+        if rest.loops:
+            found[k] = _on(found[k], rest.loops)
+        else:
+            del found[k]
+    return list(found.values())
+
+
+def _strip(tool: Tool, scallop: float) -> float:
+    """Width of the narrowest strip that a cutter may leave on a plane, mm."""
+    return float(2 * np.sqrt(2 * (tool.corner_radius or tool.radius) * scallop))
+
+
+def _on(op: Operation, loops: Loops) -> Operation:
+    """An operation on another piece of its face."""
+    return replace(op, face=replace(op.face, trims=loops))
+
+
+class _Rest:
+    """What is left of a face, in cells.
+
+    Attributes
+    ----------
+    loops : tuple of (m, 2) arrays
+        Around what nothing has taken yet; empty where all is taken.
+    """
+
+    def __init__(self, face: Face, strip: float) -> None:
+        coarse = Lattice(face)
+        size = max(_SIZE * strip, (face.area / _MOST) ** 0.5)
+        sides = [float(np.median(lengths.sum(axis=way))) for way, lengths in enumerate(coarse.lengths)]
+        counts = [int(np.clip(np.ceil(side / size), *_ALONG)) for side in sides]
+        lines = [(line[1:] + line[:-1]) / 2 for line in Lattice(face, (counts[0], counts[1])).lines]
+        middles = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
+        self._face = face
+        self._on = face.contains(middles.reshape(-1, 2)).reshape(middles.shape[:2])
+        self._taken = np.zeros_like(self._on)
+        self._uv = middles
+        self.loops: Loops = face.outline
+        self._borders = CellBorders(self._on, (lines[0], lines[1])) if self._on.any() else None
+
+    def take(self, op: Operation, height: float) -> Loops:
+        """Take off what an operation leaves no higher than that, mm, and return loops around it; none for nothing."""
+        if self._borders is None or op.path is None:
+            return ()
+        held = self._machined(Excess(self._face, op.tool, op.path, height))
+        if not held.any():
+            return ()
+        for around in self._borders.around(held, self._taken):
+            with suppress(InvalidInput):
+                gained, left = divide_nearly(self.loops, around)
+                self.loops = left
+                self._taken |= held
+                return gained
+        return ()
+
+    def _machined(self, high: Excess) -> Bools:
+        """Cells that passes machine, those aside that lie beside one that they do not, (m, n)."""
+        from scipy.ndimage import binary_dilation, label
+
+        free = self._on & ~self._taken
+        above = np.zeros_like(free)
+        above[free] = high(self._uv[free]) > 0
+        beside = np.ones((3, 3))
+        held = free & ~binary_dilation(above, structure=beside)
+        parts, _ = label(held, structure=beside)
+        return np.asarray(held & (np.bincount(parts.ravel()) >= _FEWEST)[parts])
