@@ -60,7 +60,7 @@ def test_what_two_operations_machine_goes_to_one_of_them_and_a_rest_of_which_not
 
 def test_where_passes_end_early_nothing_is_taken() -> None:
     left, rest = made(1, plane(0, 18), passes(0, 20, ends=15.0)), made(2, plane(18, SIZE), None, "not_found")
-    grown, less = take_machined_beside([left, rest], SCALLOP, 0.0)
+    grown, _ = take_machined_beside([left, rest], SCALLOP, 0.0)
     gained = grown.face.area - left.face.area
     assert 0.7 * (2 + STRIP) * 15 < gained < (2 + STRIP) * (15 + STRIP)
     uv = np.random.default_rng(4).uniform([18 / SIZE, 0], [22 / SIZE, 0.5], (40_000, 2))
