@@ -67,6 +67,14 @@ def test_where_passes_end_early_nothing_is_taken() -> None:
     assert Excess(grown.face, BALL, left.path, SCALLOP)(uv[grown.face.contains(uv)]).max() <= 0
 
 
+def test_a_rest_is_machined_up_to_its_far_border_only_where_that_goes_on_beyond_it() -> None:
+    """The strip ends between the last cells of the rest and its border, beyond which another operation begins."""
+    for far in 20 + STRIP + np.linspace(0.005, 0.1, 20):
+        left, rest = made(1, plane(0, 18), passes(0, 20)), made(2, plane(18, far), None, "not_found")
+        grown = take_machined_beside([left, rest], SCALLOP, 0.0)[0]
+        assert grown.face.area <= (20 + STRIP) * SIZE
+
+
 def test_nothing_is_taken_of_what_failed_nor_without_passes_nor_below_an_allowance() -> None:
     left = made(1, plane(0, 18), passes(0, 20))
     failed, rest = made(2, plane(18, SIZE), None, "failed"), made(2, plane(18, SIZE), None, "not_found")

@@ -95,7 +95,7 @@ class _Rest:
         size = max(_SIZE * strip, (face.area / _MOST) ** 0.5)
         sides = [float(np.median(lengths.sum(axis=way))) for way, lengths in enumerate(coarse.lengths)]
         counts = [int(np.clip(np.ceil(side / size), *_ALONG)) for side in sides]
-        lines = [(line[1:] + line[:-1]) / 2 for line in Lattice(face, (counts[0], counts[1])).lines]
+        lines = [_middles(line) for line in Lattice(face, (counts[0], counts[1])).lines]
         middles = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
         self._face = face
         self._on = face.contains(middles.reshape(-1, 2)).reshape(middles.shape[:2])
@@ -123,10 +123,17 @@ class _Rest:
         """Cells that passes machine, those aside that lie beside one that they do not, (m, n)."""
         from scipy.ndimage import binary_dilation, label
 
-        free = self._on & ~self._taken
-        above = np.zeros_like(free)
-        above[free] = high(self._uv[free]) > 0
         beside = np.ones((3, 3))
-        held = free & ~binary_dilation(above, structure=beside)
+        # Up to its border a rest is machined only where that goes on beyond it.
+        asked = binary_dilation(self._on, structure=beside)
+        above = np.zeros_like(asked)
+        above[asked] = high(self._uv[asked]) > 0
+        held = self._on & ~self._taken & ~binary_dilation(above, structure=beside)
         parts, _ = label(held, structure=beside)
         return np.asarray(held & (np.bincount(parts.ravel()) >= _FEWEST)[parts])
+
+
+def _middles(line: Array) -> Array:
+    """Middles between parameters, with one more on either side."""
+    first, last = line[1] - line[0], line[-1] - line[-2]
+    return np.concatenate([[line[0] - first / 2], (line[1:] + line[:-1]) / 2, [line[-1] + last / 2]])
