@@ -129,6 +129,18 @@ def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(sc
         assert all(map(np.array_equal, one.face.trims, other.face.trims))
 
 
+def test_a_strip_has_what_its_passes_machine_beside_it_unless_a_step_over_is_asked_for(scenes) -> None:
+    part = mushroom(scenes.plate)
+    left = {}
+    for most in (0.0, 5.0):
+        made = ta.plan(part, "ball:3", 0.1, faces=[1], workers=1, greatest_step_over=most)
+        done = [op for op in made.operations if op.done]
+        left[most] = sum(op.face.area for op in made.operations if not op.done)
+        assert sum(op.face.area for op in made.operations) == pytest.approx(part.face(1).area, rel=1e-6)
+        assert len(done) > 1 and ta.verify(made).passed == (left[most] == 0)
+    assert left[0.0] < 0.97 * left[5.0]
+
+
 def test_nobody_is_asked_where_the_division_is_given(scenes) -> None:
     made = ta.plan(mushroom(scenes.plate), "ball:3", 0.1, faces=[1], regions=1, workers=1)
     assert made.outcome == "incomplete" and len(made.operations) == 1

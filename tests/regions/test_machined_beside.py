@@ -42,6 +42,8 @@ def test_a_sub_surface_grows_as_far_as_its_last_pass_machines() -> None:
     border = grown.face.area / SIZE
     assert 20 + STRIP - 2 * 0.1 * 2 * STRIP < border <= 20 + STRIP, "but for two cells, each a tenth of a strip"
     assert grown.face.area + less.face.area == pytest.approx(SIZE**2) and less.path is None
+    gained = grown.face.area - left.face.area
+    assert less.orientation.reasons == (f"passes beside it machine {gained:.1f} mm2 of that",)
     assert Excess(grown.face, BALL, grown.path, SCALLOP)(grown.face.grid(60, 60)).max() <= 0
     judged = judge(Judged("op", left.path.cl, left.path.axis, left.path.kind, BALL.profile, (grown.face,), SCALLOP))
     assert judged.share_within >= SHARE

@@ -25,9 +25,11 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Loops = tuple[Array, ...]
 
-#: Size of the cells in which it is looked, in widths of the narrowest strip that a cutter may leave, how many of them a
-#: rest has about at most, and how many there are along a side, those beside it included.
-_SIZE, _MOST, _ALONG = 1 / 10, 80_000, (12, 3000)
+#: Size of the cells in which it is looked, in widths of the narrowest strip that a cutter may leave; how many of them a
+#: rest has about at most, and the box around it; and the fewest along a side.
+_SIZE, _MOST, _IN_BOX, _FEWEST_ALONG = 1 / 10, 80_000, 4_000_000, 12
+#: Area from which on it is told, mm^2.
+_TOLD = 0.05
 #: Connected cells fewer than this are not worth a border.
 _FEWEST = 12
 
@@ -59,13 +61,14 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
     done = [k for k, op in found.items() if op.path is not None]
     rests = [k for k, op in found.items() if not op.done and not op.failed] if done else []
     for k in rests:
-        rest = _Rest(found[k].face, min(_strip(found[j].tool, scallop) for j in done))
+        whole = found[k]
+        rest = _Rest(whole.face, min(_strip(found[j].tool, scallop) for j in done))
         for j in done:
             gained = rest.take(found[j], allowance + scallop)
             if gained:
                 found[j] = _on(found[j], unite_polygons(found[j].face.outline, gained))
         if rest.loops:
-            found[k] = _on(found[k], rest.loops)
+            found[k] = _tell(_on(whole, rest.loops), whole.face.area)
         else:
             del found[k]
     return list(found.values())
@@ -74,6 +77,15 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
 def _strip(tool: Tool, scallop: float) -> float:
     """Width of the narrowest strip that a cutter may leave on a plane, mm."""
     return float(2 * np.sqrt(2 * (tool.corner_radius or tool.radius) * scallop))
+
+
+def _tell(op: Operation, area: float) -> Operation:
+    """An operation without an axis that tells how much of an area, mm^2, others machine."""
+    gained = area - op.face.area
+    if gained < _TOLD:
+        return op
+    words = f"passes beside it machine {gained:.1f} mm2 of that"
+    return replace(op, orientation=replace(op.orientation, reasons=(*op.orientation.reasons, words)))
 
 
 def _on(op: Operation, loops: Loops) -> Operation:
@@ -91,18 +103,16 @@ class _Rest:
     """
 
     def __init__(self, face: Face, strip: float) -> None:
-        coarse = Lattice(face)
-        size = max(_SIZE * strip, (face.area / _MOST) ** 0.5)
-        sides = [float(np.median(lengths.sum(axis=way))) for way, lengths in enumerate(coarse.lengths)]
-        counts = [int(np.clip(np.ceil(side / size), *_ALONG)) for side in sides]
-        lines = [_middles(line) for line in Lattice(face, (counts[0], counts[1])).lines]
-        middles = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
-        self._face = face
+        along, across = (float(np.median(lengths.sum(axis=way))) for way, lengths in enumerate(Lattice(face).lengths))
+        size = max(_SIZE * strip, (face.area / _MOST) ** 0.5, (along * across / _IN_BOX) ** 0.5)
+        counts = [max(int(np.ceil(side / size)), _FEWEST_ALONG) for side in (along, across)]
+        u, v = (_middles(line) for line in Lattice(face, (counts[0], counts[1])).lines)
+        self._face, self._lines = face, (u, v)
+        middles = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
         self._on = face.contains(middles.reshape(-1, 2)).reshape(middles.shape[:2])
         self._taken = np.zeros_like(self._on)
-        self._uv = middles
         self.loops: Loops = face.outline
-        self._borders = CellBorders(self._on, (lines[0], lines[1])) if self._on.any() else None
+        self._borders = CellBorders(self._on, self._lines) if self._on.any() else None
 
     def take(self, op: Operation, height: float) -> Loops:
         """Take off what an operation leaves no higher than that, mm, and return loops around it; none for nothing."""
@@ -127,7 +137,8 @@ class _Rest:
         # Up to its border a rest is machined only where that goes on beyond it.
         asked = binary_dilation(self._on, structure=beside)
         above = np.zeros_like(asked)
-        above[asked] = high(self._uv[asked]) > 0
+        i, j = np.nonzero(asked)
+        above[i, j] = high(np.column_stack([self._lines[0][i], self._lines[1][j]])) > 0
         held = self._on & ~self._taken & ~binary_dilation(above, structure=beside)
         parts, _ = label(held, structure=beside)
         return np.asarray(held & (np.bincount(parts.ravel()) >= _FEWEST)[parts])
