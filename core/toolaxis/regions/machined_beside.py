@@ -28,6 +28,8 @@ Loops = tuple[Array, ...]
 #: Size of the cells in which it is looked, in widths of the narrowest strip that a cutter may leave; how many of them a
 #: rest has about at most, and the box around it; and the fewest along a side.
 _SIZE, _MOST, _IN_BOX, _FEWEST_ALONG = 1 / 10, 80_000, 4_000_000, 12
+#: Cells beside those that passes do not machine that are left too: ends of strips leave tips narrower than a cell.
+_EDGE = 2
 #: Area from which on it is told, mm^2.
 _TOLD = 0.05
 #: Connected cells fewer than this are not worth a border.
@@ -53,7 +55,7 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
 
     Notes
     -----
-    What is machined is told in the middles of small cells: of each that is taken, and of all beside it.
+    What is machined is told in the middles of small cells: of each that is taken, and of all around it, two cells far.
 
     **Properties**: 1. areas of the sub-surfaces add up as before, and none of them overlaps another one.
     """
@@ -130,21 +132,22 @@ class _Rest:
         return ()
 
     def _machined(self, high: Excess) -> Bools:
-        """Cells that passes machine, those aside that lie beside one that they do not, (m, n)."""
+        """Cells that passes machine, those aside that lie next to one that they do not, (m, n)."""
         from scipy.ndimage import binary_dilation, label
 
         beside = np.ones((3, 3))
         # Up to its border a rest is machined only where that goes on beyond it.
-        asked = binary_dilation(self._on, structure=beside)
+        asked = binary_dilation(self._on, structure=beside, iterations=_EDGE)
         above = np.zeros_like(asked)
         i, j = np.nonzero(asked)
         above[i, j] = high(np.column_stack([self._lines[0][i], self._lines[1][j]])) > 0
-        held = self._on & ~self._taken & ~binary_dilation(above, structure=beside)
+        held = self._on & ~self._taken & ~binary_dilation(above, structure=beside, iterations=_EDGE)
         parts, _ = label(held, structure=beside)
         return np.asarray(held & (np.bincount(parts.ravel()) >= _FEWEST)[parts])
 
 
 def _middles(line: Array) -> Array:
-    """Middles between parameters, with one more on either side."""
+    """Middles between parameters, with some more on either side."""
+    more = np.arange(_EDGE) + 0.5
     first, last = line[1] - line[0], line[-1] - line[-2]
-    return np.concatenate([[line[0] - first / 2], (line[1:] + line[:-1]) / 2, [line[-1] + last / 2]])
+    return np.concatenate([line[0] - first * more[::-1], (line[1:] + line[:-1]) / 2, line[-1] + last * more])
