@@ -18,8 +18,8 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 Lines = tuple[Array, Array]
 
-#: Coarse cells along a side, fewest and most.
-_FEWEST, _COARSE = 24, 72
+#: Coarse cells along a side, fewest and most, and the greatest number of fine ones unless another one is given.
+_FEWEST, _COARSE, FINE = 24, 72, 1500
 #: Pieces into which a loop is divided at least to measure it, and the most places along it.
 _PIECES, _PLACES = 64, 20_000
 #: Cells along a side whose lengths tell how long it is.
@@ -34,7 +34,7 @@ _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1]
 
 def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
                 whole: Callable[[Array, Array], Bools], between: Array | None = None,
-                most: int = 1500) -> tuple[Lines, Array]:
+                most: int = FINE) -> tuple[Lines, Array]:
     """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
 
     Parameters

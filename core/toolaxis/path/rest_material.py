@@ -15,7 +15,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_polygon, without
 from toolaxis.numeric.polygons import polygon_area
-from toolaxis.path.rest_grid import sample_again, sample_grid
+from toolaxis.path.rest_grid import FINE, sample_again, sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -37,9 +37,9 @@ OVERLOOKED = 5e-4
 #: Size of the cells that outline zones, as shares of the cutter's radius, of the narrowest strip that it may leave, and
 #: of a square as large as the face.
 _OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
-#: Fine cells along a side of a face at most, and as many as that where more of what is machined than this share lies in
-#: cells on the border of zones: pieces as narrow as the ends of strips add up there.
-_MOST, _FINEST, _ON_BORDER = 1500, 6000, 0.1
+#: Share of what is machined that may lie in cells on the border of zones before these are made smaller, and how many
+#: there are along a side then at most: pieces as narrow as the ends of strips add up there.
+_ON_BORDER, _FINEST = 0.1, 6000
 _TRIES = 5
 #: Distances are told up to this, mm: only their signs are asked for.
 _FAR = 1e-3
@@ -238,12 +238,12 @@ class RestFinder:
     def _sample(self, high: Excess) -> tuple[tuple[Array, Array], Array]:
         """A grid as fine as the border of the zones asks for, and what is left at its nodes."""
         face, size = self.face, _size(self.face, self.tool, self.scallop)
-        lines, values = sample_grid(face, high, size, high.whole, self.between, _MOST)
+        lines, values = sample_grid(face, high, size, high.whole, self.between)
         on_border = _share_on_border(face, lines, values)
-        if max(values.shape) < _MOST or on_border <= _ON_BORDER:
+        if max(values.shape) < FINE or on_border <= _ON_BORDER:
             return lines, values
         self.progress.check()
-        most = min(round(_MOST * on_border / _ON_BORDER), _FINEST)
+        most = min(round(FINE * on_border / _ON_BORDER), _FINEST)
         return sample_grid(face, high, size, high.whole, self.between, most)
 
     def _zones_in(self, found: tuple[Array, ...], path: ToolPath, nodes: Array) -> tuple[Zone, ...]:

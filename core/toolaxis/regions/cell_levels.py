@@ -70,15 +70,6 @@ class CellLevels:
         self._levels.append(_CellSize.make(cells, rows[quarter]))
         return True
 
-    def keep(self, found: Bools) -> None:
-        """Ask no more of the smallest cells but some.
-
-        Parameters
-        ----------
-        found : (n,) array of bool
-        """
-        self._levels[-1].asked &= found
-
     def keep_beside(self, found: Bools) -> None:
         """Ask no more of the smallest cells but some, and those that are quarters of one with them.
 

@@ -24,7 +24,7 @@ _HALF = 1.0001
 _NEAR, _FINEST = 0.6, 0.04
 #: Share of the face's area that has to be proven in cells of one size, and in how many sizes one after the other it may
 #: be less before smaller ones are not tried.
-_WORTH, _IDLE = 0.005, 2
+_WORTH, _IN_VAIN = 0.005, 2
 
 
 class CornerBall:
@@ -118,12 +118,13 @@ class CornerGouges(NamedTuple):
         levels = CellLevels(face, cells)
         while levels.reach > _NEAR * ball.radius and levels.halve(most):
             pass
-        proven, idle = 0.0, 0
-        while True:
+        proven, in_vain = 0.0, 0
+        while proven == 0 or in_vain < _IN_VAIN:
             surely, narrow = ball.gouges(levels.cells)
             gained = levels.claim(surely)
             levels.keep_beside(narrow)
-            proven, idle = proven + gained, 0 if gained >= _WORTH * face.area else idle + 1
-            idle_at_last = proven > 0 and idle >= _IDLE
-            if idle_at_last or levels.reach <= _FINEST * ball.radius or not levels.halve(most):
-                return CornerGouges(*levels.gather())
+            proven += gained
+            in_vain = 0 if gained >= _WORTH * face.area else in_vain + 1
+            if levels.reach <= _FINEST * ball.radius or not levels.halve(most):
+                break
+        return CornerGouges(*levels.gather())

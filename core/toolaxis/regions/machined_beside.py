@@ -61,7 +61,7 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
     """
     found = dict(enumerate(operations))
     done = [k for k, op in found.items() if op.path is not None]
-    rests = [k for k, op in found.items() if not op.done and not op.failed] if done else []
+    rests = [k for k, op in found.items() if op.orientation.axis is None and not op.failed] if done else []
     for k in rests:
         whole = found[k]
         rest = _Rest(whole.face, min(_strip(found[j].tool, scallop) for j in done))

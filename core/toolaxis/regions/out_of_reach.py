@@ -122,7 +122,9 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
 def _smallest_gouges(proofs: Sequence["_Proof"], cells: FaceRectangles) -> tuple[Bools, Bools]:
     """Where the smallest ball of all tools gouges, as `CornerBall.gouges`."""
     ball = smallest_ball([proof.ball for proof in proofs])
-    return (np.zeros(len(cells), dtype=bool),) * 2 if ball is None else ball.gouges(cells)
+    if ball is None:
+        return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
+    return ball.gouges(cells)
 
 
 def _proofs(tools: Sequence[Tool], scene: ReachScene, required: Array) -> list["_Proof"]:

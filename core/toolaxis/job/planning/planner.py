@@ -418,12 +418,10 @@ class PlanningJob:
     def _with_machined_beside(self, pieces: Sequence[Operation]) -> list[Operation]:
         """Operations of the pieces of one face, larger by what their passes machine of those without an axis."""
         inputs = self.inputs
-        if inputs.greatest_step_over > 0 or inputs.tolerance.least_lean > 0:  # not known beyond the last pass
+        unknown = inputs.greatest_step_over > 0 or inputs.tolerance.least_lean > 0  # beyond the last pass
+        if unknown or not pieces:
             return list(pieces)
-        waiting = [op for op in pieces if _waits(op)]
-        made = [op for op in pieces if not _waits(op)]
-        return [*(take_machined_beside(made, inputs.scallop, inputs.allowance_of(made[0].face)) if made else ()),
-                *waiting]
+        return take_machined_beside(pieces, inputs.scallop, inputs.allowance_of(pieces[0].face))
 
     def _face_by_face(self, plan: Plan, progress: Progress) -> Plan:
         """A plan with the faces of skins in their place where a part of these has no axis and the faces do better."""
