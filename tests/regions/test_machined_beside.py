@@ -8,6 +8,7 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.path.rest_material import Excess
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.regions import machined_beside
 from toolaxis.regions.machined_beside import take_machined_beside
 from toolaxis.shape.face import Face
 from toolaxis.verify.task import VerificationTask as Judged
@@ -75,6 +76,14 @@ def test_a_rest_is_machined_up_to_its_far_border_only_where_that_goes_on_beyond_
         left, rest = made(1, plane(0, 18), passes(0, 20)), made(2, plane(18, far), None, "not_found")
         grown = take_machined_beside([left, rest], SCALLOP, 0.0)[0]
         assert grown.face.area <= (20 + STRIP) * SIZE
+
+
+def test_what_cells_tell_wrongly_is_found_before_it_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    left, rest = made(1, plane(0, 18), passes(0, 20)), made(2, plane(18, 24), None, "not_found")
+    monkeypatch.setattr(machined_beside._Rest, "_machined", lambda self, high: self._on & ~self._taken)
+    assert [op.face.area for op in take_machined_beside([left, rest], SCALLOP, 0.0)] == [left.face.area, rest.face.area]
+    wide = made(1, left.face, passes(0, 24))
+    assert [op.number for op in take_machined_beside([wide, rest], SCALLOP, 0.0)] == [1], "it is machined whole"
 
 
 def test_nothing_is_taken_of_what_failed_nor_without_passes_nor_below_an_allowance() -> None:

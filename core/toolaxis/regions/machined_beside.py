@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
 from toolaxis.partition.uv_grid import Lattice
-from toolaxis.path.rest_material import Excess
+from toolaxis.path.rest_material import Excess, RestFinder, may_stay, undercut
 from toolaxis.plan.operation import Operation
 from toolaxis.regions.cell_borders import CellBorders
 from toolaxis.shape.face import Face
@@ -56,6 +57,7 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
     Notes
     -----
     What is machined is told in the middles of small cells: of each that is taken, and of all around it, two cells far.
+    Then it is looked at as closely as for the proof of passes, and left where too much of it stays high.
 
     **Properties**: 1. areas of the sub-surfaces add up as before, and none of them overlaps another one.
     """
@@ -66,7 +68,7 @@ def take_machined_beside(operations: Sequence[Operation], scallop: float, allowa
         whole = found[k]
         rest = _Rest(whole.face, min(_strip(found[j].tool, scallop) for j in done))
         for j in done:
-            gained = rest.take(found[j], allowance + scallop)
+            gained = rest.take(found[j], scallop, allowance)
             if gained:
                 found[j] = _on(found[j], unite_polygons(found[j].face.outline, gained))
         if rest.loops:
@@ -116,16 +118,18 @@ class _Rest:
         self.loops: Loops = face.outline
         self._borders = CellBorders(self._on, self._lines) if self._on.any() else None
 
-    def take(self, op: Operation, height: float) -> Loops:
-        """Take off what an operation leaves no higher than that, mm, and return loops around it; none for nothing."""
+    def take(self, op: Operation, scallop: float, allowance: float) -> Loops:
+        """Take off what an operation leaves no higher than the limit, and return loops around it; none for nothing."""
         if self._borders is None or op.path is None:
             return ()
-        held = self._machined(Excess(self._face, op.tool, op.path, height))
+        held = self._machined(Excess(self._face, op.tool, op.path, allowance + scallop))
         if not held.any():
             return ()
         for around in self._borders.around(held, self._taken):
             with suppress(InvalidInput):
                 gained, left = divide_nearly(self.loops, around)
+                if not gained or not _is_machined(self._face.trimmed(gained), op.tool, op.path, scallop, allowance):
+                    return ()
                 self.loops = left
                 self._taken |= held
                 return gained
@@ -144,6 +148,13 @@ class _Rest:
         held = self._on & ~self._taken & ~binary_dilation(above, structure=beside, iterations=_EDGE)
         parts, _ = label(held, structure=beside)
         return np.asarray(held & (np.bincount(parts.ravel()) >= _FEWEST)[parts])
+
+
+def _is_machined(face: Face, tool: Tool, path: ToolPath, scallop: float, allowance: float) -> bool:
+    """Whether passes leave no more of a face high than may stay, looked at as closely as for the proof of passes."""
+    finder = RestFinder(face, tool, scallop, allowance, walls=lambda uv: np.zeros(len(uv), dtype=bool))
+    zones = finder.find(path)
+    return undercut(zones) <= may_stay(zones, face.area)
 
 
 def _middles(line: Array) -> Array:
