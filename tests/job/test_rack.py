@@ -35,6 +35,7 @@ from toolaxis.regions.scene import ReachScene
 from toolaxis.report.tables import open_table, plan_table, verdict_table
 from toolaxis.report.warnings import warnings_of
 from toolaxis.search.machine_limits import intersect_limits
+from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tolerances import Tolerance
 
@@ -126,6 +127,24 @@ def test_rests_wait_apart_from_what_no_tool_has_machined() -> None:
     plain, rest = _merge(some)
     assert not plain.left_by and len(plain.loops) == 2
     assert rest.left_by == {0, 2} and len(rest.loops) == 2
+
+
+def test_a_rest_on_which_the_program_fails_costs_no_other(planned: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: of a part with 700 faces all was lost after ten minutes, for one loop of a rest that enclosed nothing."""
+    trim = Face.trimmed
+
+    def _fails(face: Face, loops: tuple[np.ndarray, ...], label: str = "") -> Face:
+        if label == "1.2":
+            raise InvalidInput("planted")
+        return trim(face, loops, label)
+
+    monkeypatch.setattr(Face, "trimmed", _fails)
+    made = ta.plan(walled(), TOOLS, SCALLOP, faces=[1], limits=UP, workers=1)
+    (only,) = made.operations
+    assert only.done and only.orientation.axis == pytest.approx(planned.operations[0].orientation.axis)
+    assert made.outcome == "incomplete" and [why.sentence for why in made.faults] == ["failed: planted"]
+    left = sum(zone.area for zone in only.zones if zone.at_wall)
+    assert made.account.open + made.account.unreachable == pytest.approx(left) and not only.zones[0].elsewhere
 
 
 def test_the_judge_passes_each_operation_with_its_own_tool(planned: Plan) -> None:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.polygons import signed_area
 from toolaxis.shape.counterparts import (
     SAME,
     Counterpart,
@@ -47,6 +48,8 @@ _GRID = 5
 _TOLD_FROM = 3
 #: Places along an edge at which the neighbour's normal is looked at, as shares of its points.
 _ALONG_EDGE = (0.25, 0.5, 0.75)
+#: Share of the area in u and v that loops enclose together at or below which one encloses nothing.
+_NOTHING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,7 @@ class AlikeFace:
         return self.apart <= SAME
 
     def carry_loops(self, loops: Sequence[Array]) -> tuple[Array, ...]:
-        """Loops of the original in the parameters of this face.
+        """Loops of the original in the parameters of this face, those aside that enclose nothing here.
 
         Parameters
         ----------
@@ -88,11 +91,15 @@ class AlikeFace:
         """
         if self.rule is not None:
             return tuple(self.rule(loop) for loop in loops)
-        return tuple(_places_on(self.face, apply_motion(self.matrix, self.original.evaluate(refine_loop(loop)).point))
-                     for loop in loops)
+        carried = [_places_on(self.face, apply_motion(self.matrix, self.original.evaluate(refine_loop(loop)).point))
+                   for loop in loops]
+        # A sliver along the border becomes a line where the border here lies a little farther in.
+        least = _NOTHING * sum(abs(signed_area(loop)) for loop in carried)
+        return tuple(loop for loop in carried if abs(signed_area(loop)) > least)
 
-    def carry_piece(self, piece: Face) -> Face:
-        """The piece of this face that is like a piece of the original, with the letters of its label.
+    def carry_piece(self, piece: Face) -> Face | None:
+        """The piece of this face that is like a piece of the original, with the letters of its label; None where its
+        loops enclose nothing here.
 
         Parameters
         ----------
@@ -104,7 +111,8 @@ class AlikeFace:
         if self.rule is not None:
             other = Counterpart(self.face, self.rule, 0.0)
             return turn_piece(piece, self.original, other, self.matrix, label)[0]
-        return self.face.trimmed(self.carry_loops(piece.outline), label)
+        loops = self.carry_loops(piece.outline)
+        return self.face.trimmed(loops, label) if loops else None
 
 
 def find_alike_faces(part: Part, faces: Sequence[Face], reach: float, mirrored: bool = True) -> dict[int, AlikeFace]:

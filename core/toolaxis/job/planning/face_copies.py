@@ -37,7 +37,7 @@ def carry_piece(op: Operation, alike: AlikeFace) -> Face | None:
     alike : AlikeFace
     """
     piece = alike.carry_piece(op.face)
-    return piece if abs(piece.area - op.face.area) <= _AREA * op.face.area else None
+    return piece if piece is not None and abs(piece.area - op.face.area) <= _AREA * op.face.area else None
 
 
 def copy_operation(op: Operation, alike: AlikeFace, piece: Face, task: FaceProblem, datum: Array) -> Operation | None:
@@ -79,6 +79,8 @@ def copy_operation(op: Operation, alike: AlikeFace, piece: Face, task: FaceProbl
     if proof.witness is not None:
         return None
     zones = tuple(replace(zone, loops=alike.carry_loops(zone.loops), avoided=()) for zone in op.zones)
+    if any(here.loops and not there.loops for here, there in zip(op.zones, zones, strict=True)):
+        return None  # what it leaves there could not be told
     found = replace(op.orientation, axis=axis, feed=_feed_there(op.orientation, alike) or op.orientation.feed,
                     gouge=proof.gouge, clearance=proof.clearance, zones=zones, map=None, lobes=(), evaluations=1,
                     reasons=(f"passes of face {op.face.label}, moved: the faces are alike",))

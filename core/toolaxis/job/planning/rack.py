@@ -244,13 +244,12 @@ class RackPlanner:
         """Plan what waits for a tool; False where the user stopped it."""
         now = {self._name(one): one for one in _merge([one for one in self._waiting if one.tool == tool])}
         self._waiting = [one for one in self._waiting if one.tool != tool]
-        targets = [Target(one.root.trimmed(one.loops, label) if one.loops else one.root, others=self._axes_of(one),
-                          in_pieces=one.in_pieces) for label, one in now.items()]
+        targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, self._screen.scene, progress)
         self._faults += made.faults
         origins = [_origin(op.face, now) for op in made.operations]
-        rests = [_rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
+        rests = [self._rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
         following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
         copied = None if following is None else self._copy(made.operations, origins, tool, progress)
         if following is not None and copied is not None:
@@ -263,6 +262,20 @@ class RackPlanner:
         with activate_progress(NO_PROGRESS):  # areas are evaluated for it, whoever wants to stop
             self._count_unfinished(now, made.operations)
         return False
+
+    def _target_of(self, one: _Waiting, label: str) -> Target | None:
+        """The sub-surface of what waits; None where the program fails to make it, and the plan tells that it did.
+
+        What other operations left stays open then, as is told of these.
+        """
+        try:
+            face = one.root.trimmed(one.loops, label) if one.loops else one.root
+            return Target(face, others=self._axes_of(one), in_pieces=one.in_pieces)
+        except Cancelled:
+            raise
+        except Exception as reason:
+            self._faults.append(fault(reason))
+            return None
 
     def _keep_last(self, op: Operation, origin: _Waiting, tool: int) -> None:
         """Keep an operation when the user has stopped the plan: no smaller tool is asked for what it leaves."""
@@ -340,9 +353,20 @@ class RackPlanner:
                 found[k][alike.face.label] = other
         for op, origin, one in zip(operations, origins, found, strict=True):
             if not op.done and not op.failed and job.axis_limits is None and not job.bodies:
-                one.update({alike.face.label: refuse_copy(op, alike.carry_piece(op.face)) for alike in origin.copies
-                            if alike.everywhere})
+                there = [(alike, alike.carry_piece(op.face)) for alike in origin.copies if alike.everywhere]
+                one.update({alike.face.label: refuse_copy(op, piece) for alike, piece in there if piece is not None})
         return found
+
+    def _rest_of(self, op: Operation, origin: _Waiting) -> Face | None:
+        """What an operation leaves for smaller tools; None where that is nothing, or the program fails to make it."""
+        if op.failed:
+            return None
+        loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops) if op.done else op.face.outline
+        try:
+            return origin.root.trimmed(loops) if loops else None
+        except Exception as reason:
+            self._faults.append(fault(reason))
+            return None
 
     def _take_over(self, op: Operation, origin: _Waiting, following: ToolChain | None, rest: Face | None,
                    copies: Mapping[str, Operation]) -> None:
@@ -353,7 +377,7 @@ class RackPlanner:
         for alike in origin.copies:
             left_by = frozenset(self._copied[one, alike.face.label] for one in origin.left_by)
             if alike not in still:
-                self._waiting.append(_wait_alone(op, origin, alike, left_by))
+                self._waiting += _wait_alone(op, origin, alike, left_by)
             elif kept:
                 self._copied[place, alike.face.label] = self._keep(copies[alike.face.label], left_by)
             self._steps[alike.face.label] = max(self._steps[alike.face.label], self._steps[origin.root.label])
@@ -478,21 +502,16 @@ def _rests_not_begun(one: _Waiting, area: float) -> list[UnplannedArea]:
     return [_rest_not_begun(face, area) for face in (one.root, *(alike.face for alike in one.copies))]
 
 
-def _wait_alone(op: Operation, origin: _Waiting, alike: AlikeFace, left_by: frozenset[int]) -> _Waiting:
-    """What waits on a face where an operation that is done on its like is refused, or may have an axis of its own."""
+def _wait_alone(op: Operation, origin: _Waiting, alike: AlikeFace, left_by: frozenset[int]) -> list[_Waiting]:
+    """What waits on a face where an operation that is done on its like is refused, or may have an axis of its own;
+    empty where its loops enclose nothing there."""
     whole = op.face.label == origin.root.label
     loops = () if whole else alike.carry_loops(op.face.outline)
+    if not whole and not loops:
+        return []
     axis = origin.axis if op.orientation.axis is None else op.orientation.axis
     moved = None if axis is None else alike.matrix[:3, :3] @ axis
-    return _Waiting(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, moved)
-
-
-def _rest_of(op: Operation, origin: _Waiting) -> Face | None:
-    """What an operation leaves for smaller tools; None where that is nothing."""
-    if op.failed:
-        return None
-    loops = tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops) if op.done else op.face.outline
-    return origin.root.trimmed(loops) if loops else None
+    return [_Waiting(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, moved)]
 
 
 def _refuse(face: Face, tool: Tool, proven: float) -> Operation:
