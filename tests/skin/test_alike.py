@@ -112,7 +112,8 @@ def test_pieces_go_over_with_their_letters_and_areas() -> None:
     one = find(patch(), patch("swap", TURN))[1]
     piece = one.original.trimmed((np.array([[7.6, 0.2], [8.8, 0.25], [9.0, 0.9], [7.5, 0.8]]),), "1b")
     there = one.carry_piece(piece)
-    assert there is not None and there.label == "2b" and there.number == 2 and there.area == pytest.approx(piece.area, rel=1e-5)
+    assert there is not None and there.label == "2b" and there.number == 2
+    assert there.area == pytest.approx(piece.area, rel=1e-5)
     assert one.carry_piece(one.original) is one.face
 
 
