@@ -47,7 +47,7 @@ def test_the_box_holds_the_cutter_on_every_motion(tool: ta.Tool) -> None:
     """Points of the cutter's own outline, turned about the axis, at places between locations."""
     rng = np.random.default_rng(7)
     tips = rng.uniform(-20, 20, (40, 3))
-    axes = unit(rng.normal(size=(40, 3)) + [0.0, 0.0, 2.0])
+    axes = unit(rng.normal(size=(40, 3)) + np.array([0.0, 0.0, 2.0]))
     box = SweptBox(tips, axes, tool.profile)
     profile = tool.profile
     heights = np.linspace(0, profile.top, 12)
