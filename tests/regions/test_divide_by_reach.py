@@ -9,11 +9,13 @@ import toolaxis as ta
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.inputs.tool_file import load_tool
 from toolaxis.job.planning.sub_surfaces import by_reach, shrink_refused
+from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.regions import divide_by_reach as divide
 from toolaxis.regions.cells import FaceCells, screening_axes
-from toolaxis.regions.divide_by_reach import _ROOM, ReachDivision, _parts, _Reach, _shrink, divide_by_reach
+from toolaxis.regions.divide_by_reach import _ROOM, LeastAreas, ReachDivision, _parts, _Reach, _shrink, divide_by_reach
 from toolaxis.regions.prices import fits_hollows
 from toolaxis.regions.reach_screen import screen_reach, seen_cells
 from toolaxis.regions.scene import ReachScene
@@ -159,7 +161,7 @@ def test_cells_that_are_not_screened_are_those_that_are_left_out_anyway(scenes) 
     axes = screening_axes([cells])[::3]
     free = screen_reach(cells, [tool], axes, scene)[0] & fits_hollows(cells, tool, axes, 0.05)
     roomy = angle_between(axes[:, None], cells.normal[None]) <= np.pi / 2 - _ROOM
-    reach = _Reach(cells, tool, scene, 0.05, 1.0)
+    reach = _Reach(cells, tool, scene, 0.05, LeastAreas(1.0, 1.0))
     reach.screen(axes)
     assert np.array_equal(reach.reached, free & roomy) and (free & ~roomy).any() and (free & roomy).any()
     # what there is little room for is nothing in the way: no cell beside it is left out
@@ -168,3 +170,46 @@ def test_cells_that_are_not_screened_are_those_that_are_left_out_anyway(scenes) 
     beside = np.array([_shrink(edged, one, there, 1) for one, there in
                        zip(free & roomy, seen_cells(cells, tool, axes, scene.tolerance) & ~free, strict=True)])
     assert np.array_equal(edged.reached, beside) and (beside != free & roomy).any()
+
+
+def comb(height: float = 12.0, count: int = 5) -> Part:
+    """A sheet, 60 x 20 mm, with thin fins across it that stand up at equal distances."""
+    x, y = np.meshgrid(np.linspace(0, 60, 7), np.linspace(0, 20, 5), indexing="ij")
+    faces = [Face.from_bspline(np.dstack([x, y, 0.002 * (y - 10) ** 2]))]
+    for at in np.linspace(0, 60, count + 2)[1:-1]:
+        for side in (-0.2, 0.2):
+            fin = np.array([[[at + side, 0.0, 0.0], [at + side, 0.0, height]],
+                            [[at + side, 20.0, 0.0], [at + side, 20.0, height]]])
+            faces.append(Face.from_bspline(fin, degree=(1, 1), flip=side < 0))
+    return Part.from_faces(faces)
+
+
+def test_small_islands_under_one_axis_are_one_sub_surface(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between fins the tool comes down from above only; every island by itself is too little for an operation."""
+    monkeypatch.setattr(divide, "_WORTH", 0.25)
+    part = comb()
+    found = divide_by_reach(*problem(part, "ball:4"))
+    assert found.pieces, "no island holds a quarter of the face"
+    counts = [len(outer_with_holes(piece.loops)) for piece in found.pieces]
+    assert max(counts) >= 3 and len(found.pieces) <= 3
+    areas, rest = areas_of(part.face(1), found)
+    assert sum(areas) + rest == pytest.approx(part.face(1).area, rel=1e-5)
+    # fins keep the middle of a ball of 4 mm 2.1 mm away on either side
+    assert 0.85 < sum(areas) / (1200 - 5 * 20 * 4.6) < 1.05
+    smaller, more = areas_of(part.face(1), found.shrink(range(len(found.pieces))))
+    assert sum(smaller) + more == pytest.approx(part.face(1).area, rel=1e-5) and sum(smaller) < sum(areas)
+
+
+def test_large_islands_are_sub_surfaces_of_their_own() -> None:
+    found = divide_by_reach(*problem(comb(count=1), "ball:4"))
+    assert [len(outer_with_holes(piece.loops)) for piece in found.pieces] == [1, 1]
+
+
+def test_the_judge_passes_an_operation_of_several_islands(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(divide, "_WORTH", 0.25)
+    made = ta.plan(comb(), ["ball:4", "ball:3"], 0.1, faces=[1], workers=1)
+    islands = [len(outer_with_holes(op.face.outline)) for op in made.operations if op.done]
+    assert max(islands) >= 3
+    assert made.account.machined > 0.7 * made.account.area
+    verdict = ta.verify(made)
+    assert all(one.passed for one in verdict.operations), verdict.reasons

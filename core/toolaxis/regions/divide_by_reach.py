@@ -47,7 +47,7 @@ _NEARER = tuple(np.radians([6.0, 3.0]))
 #: Angle by which axes are kept from the greatest one to a normal, rad, so that their neighbours serve too.
 _ROOM = np.radians(5)
 #: Sub-surfaces at most, and the share of the face that one must hold, and how many squares of the cutter's diameter.
-_PIECES, _WORTH, _SQUARES = 8, 0.03, 0.25
+_PIECES, _WORTH, _SQUARES = 8, 0.015, 0.25
 #: What a coarse cell at the edge of what an axis reaches counts beside others: finer ones may tell that it is beyond.
 _EDGE = 0.8
 #: Share of this least area that a further axis has to bring.
@@ -56,8 +56,9 @@ _PRICE = 0.5
 _APRON = 8.0
 #: Cells from what its axis does not reach at which a smaller sub-surface ends.
 _SMALLER = 2.0
-#: What a piece that another one cuts off holds at least, in shares of the least area of a sub-surface.
-_CRUMB = 0.25
+#: What an island of a sub-surface holds at least, in squares of the cutter's diameter and shares of the least area of a
+#: sub-surface, and the share of this that one costs: the tool is lifted and comes down for it.
+_ISLAND, _OF_LEAST, _LIFT = 0.25, 0.05, 0.5
 #: Share of a polygon's area in u and v below which a part of it is nothing.
 _NOTHING = 1e-6
 
@@ -65,7 +66,7 @@ _NOTHING = 1e-6
 class ReachPiece(NamedTuple):
     """A sub-surface that one axis reaches.
 
-    loops : its border first, then its holes
+    loops : its border first, then its holes, and the same of further islands
     axis : (3,) unit vector
     smaller : loops of the same one cell farther from what the axis does not reach; empty where nothing is left
     margin : loops of what lies between the two
@@ -75,6 +76,17 @@ class ReachPiece(NamedTuple):
     axis: Array
     smaller: Loops = ()
     margin: Loops = ()
+
+
+class LeastAreas(NamedTuple):
+    """Areas below which there is nothing to be machined by itself.
+
+    piece : float, of a sub-surface, mm^2
+    island : float, of one of the parts into which a sub-surface falls, mm^2
+    """
+
+    piece: float
+    island: float
 
 
 class ReachDivision(NamedTuple):
@@ -141,7 +153,9 @@ def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO
         return ReachDivision((), tuple(_parts(face.outline)), 0)
     kept = _as_searched(job, scene)
     width = mean_width(face)
-    least = max(_WORTH * face.area, _SQUARES * 2 * tool.radius * min(2 * tool.radius, width))
+    square = 2 * tool.radius * min(2 * tool.radius, width)
+    piece = max(_WORTH * face.area, _SQUARES * square)
+    least = LeastAreas(piece, max(_ISLAND * square, _OF_LEAST * piece))
     size = min(_SIZE * tool.radius, _ACROSS * width)
     coarse = _Reach(FaceCells.sized(face, max(size, (face.area / _COARSE) ** 0.5)), tool, kept, job.worth.scallop,
                     least)
@@ -169,13 +183,12 @@ class _Reach:
     scene : ReachScene
     scallop : float
         mm
-    least : float
-        Area of a sub-surface at least, mm^2.
+    least : LeastAreas
     edges : int
         Cells beside those that are in the way that are left out.
     """
 
-    def __init__(self, cells: FaceCells, tool: Tool, scene: ReachScene, scallop: float, least: float,
+    def __init__(self, cells: FaceCells, tool: Tool, scene: ReachScene, scallop: float, least: LeastAreas,
                  edges: int = 0) -> None:
         self.cells, self.tool, self.scene, self.scallop, self.least = cells, tool, scene, scallop, least
         self._edges = edges
@@ -256,14 +269,17 @@ class _Reach:
                 break
         return np.asarray(np.where(depth.max(axis=0, initial=0.0) > 0, depth.argmax(axis=0), -1))
 
-    def count_parts(self, cells: Bools) -> int:
-        """How many connected parts cells have.
+    def price_of(self, cells: Bools) -> float:
+        """What the sub-surfaces under one axis cost beside their cuts, as an area, mm^2.
 
         Parameters
         ----------
         cells : (n,) array of bool
+            That go to this axis.
         """
-        return int(self._parts(cells).max(initial=0))
+        areas = np.bincount(self._parts(cells), weights=self.cells.area, minlength=1)[1:]
+        large = int((areas >= self.least.piece).sum())
+        return _PRICE * self.least.piece * max(large, 1) + _LIFT * self.least.island * (len(areas) - large)
 
     def _parts(self, cells: Bools) -> NDArray[np.int32]:
         """Numbers of connected parts from 1, 0 beside cells, (n,)."""
@@ -273,10 +289,13 @@ class _Reach:
         return np.asarray(parts[self._place])
 
     def _crumbs(self, cells: Bools) -> Bools:
-        """Connected parts of cells that are smaller than the least area, (n,)."""
+        """Connected parts of cells that are smaller than an island, (n,); all where the others are no sub-surface."""
         own = self._parts(cells)
         areas = np.bincount(own, weights=self.cells.area, minlength=1)
-        return np.asarray(cells & (areas < self.least)[own])
+        small = areas < self.least.island
+        if areas[1:][~small[1:]].sum() < self.least.piece:
+            return cells
+        return np.asarray(cells & small[own])
 
 
 def _shrink(reach: _Reach, cells: Bools, missed: Bools, count: int) -> Bools:
@@ -321,7 +340,7 @@ class _Cover:
         reach = self._reach
         while len(numbers) < _PIECES:
             left = np.flatnonzero(reach.assign(numbers) < 0)
-            if self._area[left].sum() < _PRICE * reach.least:
+            if self._area[left].sum() < _PRICE * reach.least.piece:
                 break
             gain = reach.area_free(left[::1 + len(left) // _COARSE], axes)
             best = np.argsort(-gain, kind="stable")[:_FILLED]
@@ -339,8 +358,8 @@ class _Cover:
         goes_to = reach.assign(numbers)
         depth = reach.depth[np.asarray(numbers)[goes_to], np.arange(len(goes_to))]
         value = np.where(goes_to >= 0, np.where(depth > 1.5, 1.0, _EDGE), 0.0)
-        count = sum(reach.count_parts(goes_to == place) for place in range(len(numbers)))
-        return float(self._area @ value) - _PRICE * reach.least * count
+        price = sum(reach.price_of(goes_to == place) for place in range(len(numbers)))
+        return float(self._area @ value) - price
 
     def _beginnings(self) -> list[int]:
         """Axes that reach most, apart from each other."""
@@ -436,17 +455,30 @@ class _Borders:
             held = (goes_to == place) & left
             core = held & (reach.depth[number] > _SMALLER)
             found, rest = self._cut_out(rest, held, ~left)
-            for loops in found:
+            for loops in self._group(found):
                 inner, margin = self._cut_out(loops, core & self._inside(loops), ~left)
-                smaller = max(inner, key=polygon_area, default=())
-                for other in inner:
-                    margin = margin if other is smaller else _unite(margin, other)
+                smaller = tuple(loop for island in inner for loop in island)
                 pieces.append(ReachPiece(loops, reach.axes[number], smaller, margin))
         pieces.sort(key=lambda one: -polygon_area(one.loops))
         return ReachDivision(tuple(pieces), tuple(_parts(rest)), tried)
 
+    def _group(self, islands: list[Loops]) -> list[Loops]:
+        """Sub-surfaces under one axis: each large island, and the small ones together, or with the largest one where
+        they are too little."""
+        islands = sorted(islands, key=lambda one: -self._area_of(one))
+        large = [one for one in islands if self._area_of(one) >= self._reach.least.piece]
+        small = islands[len(large):]
+        together = tuple(loop for one in small for loop in one)
+        if not large or sum(map(self._area_of, small)) >= self._reach.least.piece:
+            return [*large, together] if together else large
+        return [large[0] + together, *large[1:]]
+
+    def _area_of(self, loops: Loops) -> float:
+        """Area of the cells in a polygon, mm^2."""
+        return float(self._cells.area @ self._inside(loops))
+
     def _cut_out(self, loops: Loops, held: Bools, taken: Bools) -> tuple[list[Loops], Loops]:
-        """Pieces of a polygon around cells, and the rest of it, crumbs included."""
+        """Islands of a polygon around cells, and the rest of it, crumbs included."""
         if not held.any():
             return [], loops
         for around in self._borders.around(self._reach.spread_out(held), self._reach.spread_out(taken)):
@@ -457,7 +489,7 @@ class _Borders:
             return [], loops
         found: list[Loops] = []
         for one in outer_with_holes(both):
-            if self._cells.area @ self._inside(one) >= _CRUMB * self._reach.least:
+            if self._area_of(one) >= _LIFT * self._reach.least.island:
                 found.append(one)
             else:
                 rest = _unite(rest, one)

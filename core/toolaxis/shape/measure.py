@@ -31,7 +31,7 @@ _STEPS = 26
 
 
 def area(face: "Face") -> float:
-    """Area, mm^2, as the integral along the trim loops of the area between them and one end of the u range.
+    """Area, mm^2, as the integral along the trim loops of the area between them and the middle of the u range.
 
     The relative error is below 1e-6 on smooth surfaces, however many corners the loops have; and areas of pieces add
     up to that of the whole to rounding where their loops share edges.
@@ -110,12 +110,14 @@ def _cut_polygon(loop: Array, cuts: tuple[Array, Array]) -> tuple[Array, Array]:
 
 
 def _up_to(face: "Face", uv: Array, cuts: Array) -> Array:
-    """Integral of the area for a unit of v, from the first of the cuts along u to places, (n,)."""
+    """Integral of the area for a unit of v, from the middle one of the cuts along u to places, (n,)."""
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-    width = np.clip(uv[:, :1] - cuts[:-1], 0.0, np.diff(cuts))
-    row, piece = np.nonzero(width > 0)
-    half = width[row, piece] / 2
-    u = cuts[piece] + half
+    middle = cuts[len(cuts) // 2]
+    near = np.clip(uv[:, :1], cuts[:-1], cuts[1:])  # the place, or the end of each piece that is nearer to it
+    start = np.where(cuts[:-1] >= middle, cuts[:-1], cuts[1:])
+    row, piece = np.nonzero(near != start)
+    half = (near[row, piece] - start[piece]) / 2
+    u = start[piece] + half
     d = face.evaluate(np.stack([u[:, None] + half[:, None] * nodes,
                                 np.broadcast_to(uv[row, 1:], (len(row), POINTS))], axis=-1).reshape(-1, 2))
     size = lengths(np.cross(d.su, d.sv)).reshape(len(row), POINTS)
