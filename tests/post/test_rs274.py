@@ -1,13 +1,12 @@
 """LinuxCNC's own interpreter takes the programs, and its canonical moves are the plan's."""
 
-import os
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks._others import Unavailable
+from benchmarks._others_linuxcnc import LinuxCnc, find_linuxcnc, interpret
 from nc_plans import DATUM, a_plan, axes_at, chain, held_angles
 
 from toolaxis.cldata.toolpath import Motion
@@ -17,54 +16,17 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.dialects.registry import dialect_named
 from toolaxis.post.program import program_of, program_text
 
-HOME = Path(__file__).resolve().parents[2] / ".venv" / "rs274"
 MOVE = re.compile(r"STRAIGHT_(TRAVERSE|FEED)\(([^)]*)\)")
 RATE = re.compile(r"SET_FEED_RATE\(([^)]*)\)")
 
 
-def _unpacked(folder: Path) -> str:
-    """Fetch Debian's packages with the interpreter and unpack them; the reason where that does not work."""
-    if not (shutil.which("apt-get") and shutil.which("dpkg")):
-        return "there is no apt-get here"
-    needs = subprocess.run(["apt-cache", "depends", "linuxcnc-uspace"], capture_output=True, text=True, check=False)
-    names = re.findall(r"Depends: (libboost-python\S*|libmodbus\S*|libtirpc3\S*)", needs.stdout)
-    folder.mkdir(parents=True, exist_ok=True)
-    got = subprocess.run(["apt-get", "download", "linuxcnc-uspace", *names], cwd=folder, capture_output=True, text=True,
-                         check=False)
-    if got.returncode:
-        return f"apt-get does not fetch linuxcnc-uspace: {got.stderr.strip()[-200:]}"
-    for package in folder.glob("*.deb"):
-        subprocess.run(["dpkg", "-x", package.name, "."], cwd=folder, check=True)
-        package.unlink()
-    return ""
-
-
 @pytest.fixture(scope="module")
-def interpreter(request: pytest.FixtureRequest) -> tuple[str, dict[str, str]]:
-    """The program rs274 and the environment that it needs."""
-    found = shutil.which("rs274")
-    if found:
-        return found, dict(os.environ)
-    own = HOME / "usr" / "bin" / "rs274"
-    if not own.is_file():
-        if not request.config.getoption("--long"):
-            pytest.skip("LinuxCNC's rs274 is not installed (make test-all fetches it where apt-get works)")
-        reason = _unpacked(HOME)
-        if reason or not own.is_file():
-            pytest.skip(reason or "the package holds no rs274")
-    libraries = [HOME / "usr" / "lib", *(HOME / "usr" / "lib").glob("*-linux-gnu")]
-    return str(own), {**os.environ, "LD_LIBRARY_PATH": ":".join(map(str, libraries))}
-
-
-def _canon(interpreter: tuple[str, dict[str, str]], text: str, folder: Path) -> str:
-    (folder / "tool.tbl").write_text("T1 P1 Z0 D12\n")
-    (folder / "program.ngc").write_text(text)
-    made = subprocess.run([interpreter[0], "-g", "-t", "tool.tbl", "program.ngc"], cwd=folder, env=interpreter[1],
-                          stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
-    if "error while loading shared libraries" in made.stderr:
-        pytest.skip(made.stderr.strip())
-    assert made.returncode == 0 and "PROGRAM_END" in made.stdout, made.stderr + made.stdout[-500:]
-    return made.stdout
+def linuxcnc(request: pytest.FixtureRequest) -> LinuxCnc:
+    """The interpreter as it is installed or unpacked; fetched with --long."""
+    try:
+        return find_linuxcnc(fetch=request.config.getoption("--long"))
+    except Unavailable as reason:
+        pytest.skip(str(reason))
 
 
 def _moves(canon: str) -> tuple[np.ndarray, list[bool], list[float]]:
@@ -85,13 +47,12 @@ def _plan(machine_name: str, seed: int) -> tuple[Plan, Mounting]:
 
 
 @pytest.mark.parametrize("machine_name", ["mikron-ucp-710", "bc-table-table", "ab-trunnion", "three-axes-fixture"])
-def test_canonical_moves_are_the_plan(machine_name: str, interpreter: tuple[str, dict[str, str]],
-                                      tmp_path: Path) -> None:
+def test_canonical_moves_are_the_plan(machine_name: str, linuxcnc: LinuxCnc, tmp_path: Path) -> None:
     for seed in (1, 2):
         plan, mounting = _plan(machine_name, seed)
         dialect = dialect_named("linuxcnc")
         program = program_of(plan, mounting, dialect)
-        canon = _canon(interpreter, program_text(program, dialect), tmp_path)
+        canon = interpret(linuxcnc, program_text(program, dialect), tmp_path)
         rows, rapid, rates = _moves(canon)
         at = 0
         for op in plan.operations:
