@@ -65,7 +65,7 @@ def require(*modules: str) -> None:
 
 
 @cache
-def small_plan(example: str, tool: Tool, scallop: float = SCALLOP) -> Plan:
+def small_plan(example: str, tool: Tool, strategy: str = "indexed") -> Plan:
     """The plan of one of the examples, made once in a process.
 
     Parameters
@@ -73,10 +73,9 @@ def small_plan(example: str, tool: Tool, scallop: float = SCALLOP) -> Plan:
     example : str
         Name of a STEP file in the folder of examples.
     tool : Tool
-    scallop : float
-        mm
+    strategy : str
     """
-    return ta.plan(ta.load(EXAMPLES / f"{example}.step"), tool, scallop, workers=1)
+    return ta.plan(ta.load(EXAMPLES / f"{example}.step"), tool, SCALLOP, strategy=strategy, workers=1)
 
 
 def path_of(plan: Plan) -> ToolPath:

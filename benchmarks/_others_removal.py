@@ -85,7 +85,8 @@ def cut_stock(part: PartMesh, tool: Tool, path: ToolPath) -> Left:
     stock = [f"v {_row(row)}" for row in raised] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in part.mesh.faces]
     shank, holder = tool.outlines["shank"], tool.outlines["holder"]
     lines = [f"tolerance {CHORD}", f"cutter {2 * tool.radius} {tool.corner_radius} {tool.profile.top}",
-             f"shank {2 * shank[0, 0]} {np.ptp(shank[:, 1])}", f"holder {2 * holder[0, 0]} {np.ptp(holder[:, 1])}"]
+             f"shank {2 * shank[0, 0]} {holder[0, 1] - shank[0, 1]}",
+             f"holder {2 * holder[0, 0]} {np.ptp(holder[:, 1])}"]
     lines += [f"pose {_row(tip)} {_row(axis)}" for tip, axis in zip(path.cl, path.axis, strict=True)]
     with tempfile.TemporaryDirectory() as folder:
         files = [Path(folder) / name for name in ("stock.obj", "poses.txt", "left.obj")]

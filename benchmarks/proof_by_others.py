@@ -12,14 +12,15 @@ from benchmarks._others import Check, Unavailable
 from benchmarks._others_angles import compare_angles
 from benchmarks._others_control import TRUNNIONS, compare_control
 from benchmarks._others_distances import compare_distances
-from benchmarks._others_removal import compare_removal
+from benchmarks._others_removal import TOOL, compare_removal
 
-#: What is checked, in the order of the table.
-CHECKS: dict[str, Callable[[], Check]] = {"distances": compare_distances, "control": compare_control,
-                                          "removal": compare_removal, "angles": compare_angles}
+#: What can be checked, in the order of the table.
+CHECKS: dict[str, Callable[[], Check]] = {
+    "distances": compare_distances, "moving": lambda: compare_distances("dish", TOOL, count=60, strategy="sturz"),
+    "removal": compare_removal, "control": compare_control, "angles": compare_angles}
 #: The same in less time: fewer motions and orientations, one machine, nothing that is fetched or built.
 SHORT: dict[str, Callable[[], Check]] = {
-    "distances": lambda: compare_distances(count=60),
+    "distances": lambda: compare_distances("dish", TOOL, count=40),
     "control": lambda: compare_control(TRUNNIONS[:1], "dish", fetch=False), "angles": lambda: compare_angles(60)}
 
 
