@@ -9,7 +9,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.profile import Profile
-from toolaxis.verify.convex_edges import _may_lie_within
+from toolaxis.verify.convex_edges import _may_lie_within, depth_at_edges
 from toolaxis.verify.task import VerificationTask
 from toolaxis.verify.verdict import judge
 
@@ -154,3 +154,37 @@ def test_air_behind_a_rib_that_grows_wider_is_no_gouge(width, below):
                                    tolerance=Tolerance(gouge=0.002)), spacing=0.2)
     assert found.gouge_max == pytest.approx(max(below - 0.03, 0.0), abs=0.001)
     assert {place.face for place in found.worst_gouge} == ({"leaning"} if below else set())
+
+
+#: Where the rolled strip begins to bend, mm, and its radius there.
+FLAT_TO, ROLLED = 0.03, 0.05
+
+
+def rolled() -> Face:
+    """A strip that is flat next to its open border at y = 0, and then bends down, ever farther from the plane."""
+    y = np.concatenate([np.linspace(0.0, FLAT_TO, 4), np.linspace(0.035, 0.2, 40)])
+    z = -np.maximum(y - FLAT_TO, 0.0) ** 2 / (2 * ROLLED)
+    rows = [np.column_stack([np.full(len(y), x), y, z]) for x in (0.0, 5.0, 10.0)]
+    knots = np.concatenate([[0.0], np.arange(len(y)), [len(y) - 1.0]])
+    return Face.from_bspline(np.stack(rows), degree=(2, 1), knots=([0, 0, 0, 1, 1, 1], knots))
+
+
+@pytest.mark.parametrize("deep", [0.0, 0.02])
+def test_air_over_a_face_that_bends_more_than_at_its_border_is_no_gouge(deep: float) -> None:
+    """Found: rays were laid inwards with the bend of the border, stood in the air farther in, and told that as a depth.
+
+    All is cut away down to so deep below the strip; the rays' own depths say nothing.
+    """
+    face = rolled()
+
+    def cut(feet: np.ndarray, ways: np.ndarray, depth: np.ndarray) -> np.ndarray:
+        points = np.concatenate([feet - share * np.minimum(depth, 1.0)[:, None] * ways
+                                 for share in np.linspace(0, 1, 200)])
+        at = nearest(face, points)
+        over = ((points - at.point) * face.normal(at.uv)).sum(axis=1) > -deep - 1e-9
+        return np.minimum(depth, 1.0) * np.cumprod(over.reshape(200, -1), axis=0).sum(axis=0) / 200
+
+    foot, normal = np.array([[5.0, 0.002, 0.0]]), np.array([[0.0, 0.0, 1.0]])
+    told, near = depth_at_edges(face, (foot, normal, np.array([1.0])), ((), ()), cut, 0.01, lambda *ray: ray[2])
+    assert near.all()
+    assert told[0] == pytest.approx(deep, abs=0.006)

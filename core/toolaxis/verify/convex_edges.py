@@ -97,24 +97,47 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
             asked = np.maximum(middle, _LEAST)
             found = cut(feet.reshape(-1, 3), directions.reshape(-1, 3), asked.reshape(-1)).reshape(asked.shape)
             found = np.where(middle > 0.0, np.minimum(found, middle), 0.0)
-            _follow_to_other_places((feet, directions), found, cut, allowed, others)
+            over = (found > allowed).any(axis=1)
+            if over.any():
+                deep = feet[over].reshape(-1, 3), directions[over].reshape(-1, 3)
+                placed = _place_on_part(deep, (face, *around[0]))
+                limit = np.maximum(middle[over], _LEAST).reshape(-1)
+                found[over] = _follow_to_other_places(placed, limit, cut, others).reshape(over.sum(), -1)
             told[rows] = found.max(axis=1)
     return told, near
 
 
-def _follow_to_other_places(rays: tuple[Array, Array], found: Array, cut: Callable[[Array, Array, Array], Array],
-                            allowed: float, others: Callable[[Array, Array, Array], Array]) -> None:
-    """Lower the depths of rays beside an edge, (k, steps), that come nearer to another place of the part."""
-    over = found > allowed
-    if not over.any():
-        return
-    feet, directions, depth = rays[0][over], rays[1][over], found[over]
+def _place_on_part(rays: tuple[Array, Array], faces: tuple[Face, ...]) -> tuple[Array, Array, Array]:
+    """Rays whose feet lie exactly on the part, by the nearest of its faces: feet and normals, (m, 3), and how far the
+    feet were moved, (m,) mm.
+
+    The way inwards is told by the face's bend at its beginning: where it bends more on, or goes over into another face,
+    feet would stand in the air or within the part.
+    """
+    foot, normal = rays[0].copy(), rays[1].copy()
+    away = np.full(len(foot), np.inf)
+    for face in faces:
+        beyond = np.maximum(np.maximum(face.box[0] - rays[0], rays[0] - face.box[1]), 0.0)
+        rows = np.flatnonzero(np.linalg.norm(beyond, axis=1) < away)
+        if not len(rows):
+            continue
+        found = nearest(face, rays[0][rows])
+        closer = found.distance < away[rows]
+        rows, uv = rows[closer], found.uv[closer]
+        away[rows], foot[rows], normal[rows] = found.distance[closer], found.point[closer], face.normal(uv)
+    return foot, normal, away
+
+
+def _follow_to_other_places(rays: tuple[Array, Array, Array], limit: Array, cut: Callable[[Array, Array, Array], Array],
+                            others: Callable[[Array, Array, Array], Array]) -> Array:
+    """Depths of rays beside an edge, followed to a limit each, (m,) mm, until another place of the part is nearer."""
+    feet, directions, moved = rays
+    depth = cut(feet, directions, limit + moved)
     end = np.maximum(others(feet, directions, depth), _LEAST)
     short = end < depth
-    if not short.any():
-        return
-    depth[short] = cut(feet[short], directions[short], end[short])
-    found[over] = depth
+    if short.any():
+        depth[short] = cut(feet[short], directions[short], end[short])
+    return depth
 
 
 def _may_lie_within(reach: float, other: Face, foot: Array) -> NDArray[np.bool_]:
