@@ -17,7 +17,8 @@ from benchmarks._others_removal import TOOL, compare_removal
 #: What can be checked, in the order of the table.
 CHECKS: dict[str, Callable[[], Check]] = {
     "distances": compare_distances, "moving": lambda: compare_distances("dish", TOOL, count=60, strategy="sturz"),
-    "removal": compare_removal, "control": compare_control, "angles": compare_angles}
+    "removal": compare_removal, "removal-moving": lambda: compare_removal(strategy="sturz"),
+    "control": compare_control, "angles": compare_angles}
 #: The same in less time: fewer motions and orientations, one machine, nothing that is fetched or built.
 SHORT: dict[str, Callable[[], Check]] = {
     "distances": lambda: compare_distances("dish", TOOL, count=40),
