@@ -19,6 +19,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.post.dialects.registry import dialects
 from toolaxis.post.program import Dialect, program_of, program_text
+from toolaxis.post.setup_sheet import sheet_text
 
 DIALECTS = dialects()
 MACHINES = ("mikron-ucp-710", "dmg-dmu-60t", "bc-table-table", "nutating-head", "head-head-portal", "ab-trunnion",
@@ -188,6 +189,17 @@ def test_axes_without_end_roll_over_but_on_linuxcnc() -> None:
         found = re.findall(r"^G0 C(\S+) A40\.", program_text(program, DIALECTS[name]), re.MULTILINE)
         assert [float(value) for value in found] == wanted
         assert [station.orientation for station in program.stations] == [0, 1, 2, 0]
+
+
+def test_linuxcnc_s_sheet_tells_how_tables_must_turn() -> None:
+    """Only where the program turns a table: not for a fixture that is set by hand, nor for other dialects."""
+    told = "Growing angles of C and A must turn the tool right-handed"
+    for machine, name, wanted in (("mikron-ucp-710", "linuxcnc", True), ("mikron-ucp-710", "iso", False),
+                                  ("three-axes-fixture", "linuxcnc", False)):
+        dialect = DIALECTS[name]
+        plan = a_plan(np.array([0.0, 0.0, 1.0]), np.random.default_rng(4))
+        program = program_of(plan, Mounting(load_machine(machine)), dialect)
+        assert (told in sheet_text(program, dialect, "program.ngc")) == wanted
 
 
 def test_three_axes_take_what_stands_upright() -> None:

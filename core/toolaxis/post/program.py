@@ -107,6 +107,10 @@ class Dialect(ABC):
     def end(self, program: ProgramContext) -> Lines:
         """Blocks of the end."""
 
+    def sheet_notes(self, program: ProgramContext) -> list[str]:
+        """What the operator must mind with this dialect on the program's machine."""
+        return list(self.notes)
+
     def comment(self, text: str) -> str:
         """A block that is a comment."""
         return f"({_plain(text)})"

@@ -274,7 +274,7 @@ def _start(program: Program, dialect: Dialect, angles: Array) -> list[str]:
 
 
 def _notes(program: Program, dialect: Dialect) -> list[str]:
-    notes, allowed = list(dialect.notes), program.inputs.tolerance.gouge
+    notes, allowed = dialect.sheet_notes(program), program.inputs.tolerance.gouge
     over = [station.operation.name for station in program.stations if gouge_of(program, dialect, station) > allowed]
     if over:
         notes.append(f"With the digits of this dialect the bound of the gouge exceeds {allowed:g} mm in "

@@ -35,6 +35,17 @@ class LinuxCnc(Iso):
         """Tool, spindle."""
         return [f"T{program.tool_number} M6", f"S{program.inputs.spindle:.0f} M3"]
 
+    def sheet_notes(self, program: ProgramContext) -> list[str]:
+        """Which way a table must turn: LinuxCNC's own modules of kinematics disagree with ISO 841."""
+        turning = [axis.name for axis in program.machine.table if not axis.by_hand]
+        if not turning:
+            return super().sheet_notes(program)
+        return [*super().sheet_notes(program),
+                f"Growing angles of {' and '.join(turning)} must turn the tool right-handed as seen from the part "
+                "(ISO 841). LinuxCNC's xyzac-trt-kins and xyzbc-trt-kins (release 2.9) count them the other way round. "
+                "Turn each axis to 10 deg before the start; where one goes the wrong way, reverse its direction in the "
+                "machine's file and post the program again."]
+
     def retracted(self, program: ProgramContext) -> Lines:
         """Z to the machine coordinate at which rotary axes may turn."""
         return [f"G53 G0 Z{program.retract:.3f}"]
