@@ -40,7 +40,7 @@ def _part(rows: Array, k: int, vector: Array) -> float:
 @jit
 def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> float:
     """Newton's method from the parameters in ``uv``; the square of how far from the place it gave up, mm^2, 0 where it
-    ended."""
+    ended, and then ``d`` holds the vectors there."""
     rows, origin, ends = frame
     away = np.inf
     for _ in range(ITERATIONS):
@@ -61,8 +61,18 @@ def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array,
                 uv[k] = ends[k, 0] + (uv[k] - ends[k, 0]) % ends[k, 2]
         away = x * x + y * y
         if size <= LAST:
+            _carry_vectors(along_u, along_v, d)
             return 0.0
     return away
+
+
+@jit
+def _carry_vectors(along_u: float, along_v: float, d: Array) -> None:
+    """S, Su and Sv carried on by a last step, which is so short that the bend does not change."""
+    for c in range(3):
+        d[0, c] += along_u * d[1, c] + along_v * d[2, c]
+        d[1, c] += along_u * d[3, c] + along_v * d[4, c]
+        d[2, c] += along_u * d[4, c] + along_v * d[5, c]
 
 
 @jit
@@ -94,7 +104,7 @@ def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d:
                 if left < away:
                     away, best_u, best_v = left, uv[0], uv[1]
         uv[0], uv[1] = best_u, best_v
-    surface_derivatives(data, uv[0], uv[1], d, work)
+        surface_derivatives(data, uv[0], uv[1], d, work)
 
 
 @jit

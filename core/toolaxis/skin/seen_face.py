@@ -29,6 +29,9 @@ Bools = NDArray[np.bool_]
 
 #: Places along each parameter, and pieces of the longest loop, from which a point is looked for.
 _GRID, _PIECES = 24, 192
+#: How near to the middle of a cell the point must lie that is found there, as a share of the cell, and how far rates
+#: may lead within the cell, as a share of the range: beyond that they tell nothing.
+_FOUND, _LED = 1e-6, 0.1
 #: Ends of a parameter range that lie nearer to each other than this share of the face's diagonal are the same.
 _SAME = 1e-6
 
@@ -157,17 +160,27 @@ class SeenFace:
         return self.samples[self._tree.query(places)[1]].copy()
 
     def begin_in_cells(self, count: int) -> Array:
-        """Parameters from which places are looked for, by the cell of the box in which they lie, (count, count, 2).
+        """From which parameters places are looked for, by the cell of the box in which they lie, (count, count, 6).
+
+        The parameters u, v of the middle of the cell, and the rates of u with x, u with y, v with x and v with y. Where
+        they would lead far within the cell, or the middle is not found, the rates are zero.
 
         Parameters
         ----------
         count : int
             Cells each way.
         """
-        share = (np.arange(count) + 0.5) / count
         low, high = self.box
-        middles = np.stack(np.meshgrid(*(low + share[:, None] * (high - low)).T, indexing="ij"), axis=-1)
-        return self._begin(middles.reshape(-1, 2)).reshape(count, count, 2)
+        size = (high - low) / count
+        share = np.arange(count) + 0.5
+        middles = np.stack(np.meshgrid(*(low + share[:, None] * size).T, indexing="ij"), axis=-1).reshape(-1, 2)
+        near = self._begin(middles)
+        uv, table = self._find_by_kernel(middles)
+        rates = _rates_with_place(table[:, 1] @ self.rows.T, table[:, 2] @ self.rows.T)
+        missed = np.linalg.norm(self.project(table[:, 0]) - middles, axis=1) > _FOUND * size.max()
+        far = (np.abs(rates) @ size > _LED * self.frame.ends[:, 1]).any(axis=1)
+        uv[missed], rates[missed | far] = near[missed], 0.0
+        return np.column_stack([uv, rates.reshape(-1, 4)]).reshape(count, count, 6)
 
     @cached_property
     def has_kernel(self) -> bool:
@@ -228,10 +241,7 @@ class SeenFace:
         """The plain twin of `toolaxis.skin.place_kernel.turn_into_plane`, at parameters (n, 2)."""
         d = self.face.evaluate(uv)
         a, b = d.su @ self.rows.T, d.sv @ self.rows.T
-        det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
-        # rates of the face's own parameters (u, v) with x and with y
-        ux, uy, vx, vy = b[:, 1] / det, -b[:, 0] / det, -a[:, 1] / det, a[:, 0] / det
+        (ux, uy), (vx, vy) = np.moveaxis(_rates_with_place(a, b), 0, -1)
         sx = d.su * ux[:, None] + d.sv * vx[:, None]
         sy = d.su * uy[:, None] + d.sv * vy[:, None]
         second = []
@@ -247,6 +257,14 @@ class SeenFace:
             if np.isfinite(self.periods[k]):
                 uv[:, k] = low[k] + np.mod(uv[:, k] - low[k], self.periods[k])
         return uv
+
+
+def _rates_with_place(a: Array, b: Array) -> Array:
+    """Rates of u with x and y, and of v with x and y, (n, 2, 2), from Su and Sv in the plane, (n, 2) each."""
+    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    det = np.where(np.abs(det) > 0, det, np.finfo(float).tiny)
+    turned = np.stack([b[:, 1], -b[:, 0], -a[:, 1], a[:, 0]], axis=1)
+    return np.asarray(turned / det[:, None]).reshape(-1, 2, 2)
 
 
 def _solve(a: Array, b: Array, right: Array) -> Array:

@@ -43,7 +43,8 @@ class SplineTable(NamedTuple):
     first : (k, 3) array of int, where knots in u, knots in v and control points of each begin
     size : (k, 5) array of int, control points along u and v, degrees, and 1 where it is rational
     ends : (k, 2, 3) array, as of `PlaceFrame`
-    begin : (k, c, c, 2) array, parameters from which places in the cells of each box are looked for
+    begin : (k, c, c, 6) array, from which parameters places in the cells of each box are looked for, as
+        `toolaxis.skin.seen_face.SeenFace.begin_in_cells` says it
     """
 
     knots: Array
@@ -177,10 +178,15 @@ def _evaluate_face(table: ViewTable, k: int, place: Array, out: Array, memory: M
     knots, control, first, size, ends, begin = table.splines
     cells = begin.shape[1]
     low, high = table.boxes[k, 0], table.boxes[k, 1]
-    a = min(max(int((place[0] - low[0]) / max(high[0] - low[0], 1e-300) * cells), 0), cells - 1)
-    b = min(max(int((place[1] - low[1]) / max(high[1] - low[1], 1e-300) * cells), 0), cells - 1)
+    wide, long = max(high[0] - low[0], 1e-300) / cells, max(high[1] - low[1], 1e-300) / cells
+    a = min(max(int((place[0] - low[0]) / wide), 0), cells - 1)
+    b = min(max(int((place[1] - low[1]) / long), 0), cells - 1)
+    # places beyond the box are led no farther than the cell reaches
+    x = min(max(place[0] - low[0] - (a + 0.5) * wide, -wide), wide)
+    y = min(max(place[1] - low[1] - (b + 0.5) * long, -long), long)
     uv = memory.uv
-    uv[0], uv[1] = begin[k, a, b, 0], begin[k, a, b, 1]
+    uv[0] = begin[k, a, b, 0] + begin[k, a, b, 2] * x + begin[k, a, b, 3] * y
+    uv[1] = begin[k, a, b, 1] + begin[k, a, b, 4] * x + begin[k, a, b, 5] * y
     nu, nv, pu, pv = size[k, 0], size[k, 1], size[k, 2], size[k, 3]
     behind_u, behind_v = first[k, 0] + nu + pu + 1, first[k, 1] + nv + pv + 1
     net = control[first[k, 2]:first[k, 2] + nu * nv].reshape((nu, nv, 4))
