@@ -237,6 +237,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         inputs.check_rack(rack.tools)
     else:
         inputs.check_tool(cutter)
+    progress.report("reading the part", 0, 0)
     loaded = inputs.prepare_part(load(part))
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
@@ -245,10 +246,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         check_rack_inputs(RackInputs(method, chosen.moves, regions, orientations is not None, bool(given),
                                      compare))
         if not asked:
+            progress.report("looking for blades", 0, 0)
             pattern = _find_blades(loaded, progress)
             faces = "skins" if pattern is None else None
     if pattern is not None:
         loaded = pattern.part
+    progress.report("joining faces", 0, 0)
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
                                  WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
@@ -348,8 +351,7 @@ def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[
     """The plan of a job with each of several tools: blade by blade where there is a pattern, with so many at most."""
     pattern, most = asked
     with activate_progress(progress):
-        if jobs[0].workers > 1:
-            _in_cells(jobs[0], progress)
+        _in_cells(jobs[0], progress)
         try:
             if pattern is not None:
                 made = plan_blades_with_rack(jobs, pattern, most, progress)
@@ -370,7 +372,7 @@ def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool]
             if job.workers > 1:
                 _in_cells(job, progress)
             if whole:
-                progress.report("looking for blades", 0, 1)
+                progress.report("looking for blades", 0, 0)
                 made, refusal = _plan_bladed(job, compare, progress)
                 if made is not None:
                     return made

@@ -144,6 +144,7 @@ class RackPlanner:
         whole = [target.face for target in pieces if target.ended is None]
         self._done += [target.ended for target in pieces if target.ended is not None]
         self._screen = RackScreening(self.jobs, whole)
+        progress.report("looking for faces that are alike", 0, 0)
         alike = self._find_alike(whole)
         originals = [face for k, face in enumerate(whole) if k not in alike]
         copies = {face: tuple(one for one in alike.values() if one.original is face) for face in originals}
