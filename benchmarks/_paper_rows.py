@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 from toolaxis.contact.clearance.gouge import penetration
 from toolaxis.contact.frame import axis_from_lean, contact_frame
 from toolaxis.contact.strip.width import strip_width
+from toolaxis.feed.fixed_axis_time import Feeds
 from toolaxis.feed.jerk_profile import travel_time
 from toolaxis.machine.feed_polytopes import Level, alignments, best_along, preferred_direction
 from toolaxis.machine.library import load_machine
+from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.corner_rounding import corner
+from toolaxis.search.fastest_setup import cutting_seconds
+from toolaxis.search.kinematic_setup import PassSegment, find_setup
 from toolaxis.shape.analytic import PlanarSurface
 from toolaxis.shape.face import Face
 from toolaxis.strategies.blade.angle_channel import channel
@@ -200,7 +204,26 @@ def grandguillaume2021() -> tuple[PaperRow, ...]:
             "2175 s measured",
             f"{1200 * stops:.0f} s with a stop after each, {1200 * around:.0f} s without",
         ),
+        PaperRow(
+            "Manta passes at x = 0.5, 150 and 300 mm, time saved by jerk",
+            "13 to 38 % measured",
+            ", ".join(f"{100 * _saved_on_manta(x):.1f}" for x in (0.5, 150.0, 300.0)) + " %",
+        ),
     )
+
+
+def _saved_on_manta(x: float) -> float:
+    """Share of the time that aligning the mean feed saves on one pass of a ball of 8 mm along y over the Manta."""
+    points = json.loads((EXAMPLES / "manta.json").read_text())["points"]
+    face = Face.from_bspline(np.array(points), degree=(3, 3))
+    uv = np.column_stack([np.full(200, x / 600), np.linspace(0, 1, 200)])
+    normals = face.normal(uv)
+    one = (PassSegment(face.evaluate(uv).point + 8.0 * normals, normals),)
+    mounting = Mounting(load_machine("mikron-ucp-710"))
+    feeds = Feeds(500.0, tolerance=0.01)
+    aligned = find_setup(mounting, one).rotary
+    basic, best = (float(cutting_seconds(mounting, one, at, feeds)[0]) for at in (np.zeros(2), aligned))
+    return 1 - best / basic
 
 
 def jang2021() -> tuple[PaperRow, ...]:
