@@ -13,6 +13,7 @@ from toolaxis.shape.face import Face
 from toolaxis.strategies.two_point.contact import BRIDGE, circle_strip_width, match_lead, two_point_lead
 from toolaxis.strategies.two_point.inputs import TwoPointInputs
 from toolaxis.strategies.two_point.lean_field import field_of
+from toolaxis.strategies.two_point.path import strokes
 from toolaxis.strategies.two_point.postures import BEHIND, CONVEX, REASONS, TWO, postures
 from toolaxis.strategies.two_point.search import describe_contacts, gouging, two_point
 from toolaxis.strategies.two_point.strips import lane, lay_strips, next_strip, places, strip
@@ -49,6 +50,18 @@ def test_strips_on_a_trough_are_the_formulas(posture, lean, lift):
     angles = [2 * np.arcsin(np.linalg.norm(end - point) / (2 * RHO)) for end in ends]
     assert RHO * sum(angles) == pytest.approx(arc, rel=0.03)
     np.testing.assert_allclose(found.halves[:, 0], found.halves[:, 1], rtol=2e-3)
+
+
+def test_a_pass_may_end_beside_a_posture_by_the_last_digit():
+    """Found: points between both coincided, and a path on the biquintic surface was lost with what is no number."""
+    work = TwoPointInputs(basin(), TOOL, H, "u")
+    one = strip(work, 0.4)
+    own = one.lanes[0]
+    first, last = own.along[8], own.along[-8]
+    reach = np.tile([np.nextafter(first, -np.inf), np.nextafter(last, np.inf)], (len(own.reach), 1))
+    ((made,),) = strokes(work, (replace(one, lanes=(replace(own, reach=reach), *one.lanes[1:])),))
+    assert np.isfinite(made.tip).all() and np.isfinite(made.axis).all()
+    assert np.linalg.norm(np.diff(made.tip, axis=0), axis=1).min() > 0
 
 
 def test_reasons_for_one_contact():

@@ -17,6 +17,8 @@ Bools = NDArray[np.bool_]
 
 #: Places across a strip at which it is looked whether the face is there.
 _ACROSS = 15
+#: Parts of a stroke shorter than this share of it are none.
+_SAME = 1e-9
 
 
 def strokes(work: TwoPointInputs, strips: tuple[Strip, ...], direction: str = "zigzag",
@@ -78,6 +80,8 @@ def _stroke(work: TwoPointInputs, one: Strip, lane: PassPostures, span: tuple[fl
     """Points of a pass, so close that straight motions keep the chord tolerance, at tip, rim and twice that high."""
     on = (lane.along >= span[0]) & (lane.along <= span[1])
     along = np.unique(np.concatenate([[span[0]], lane.along[on], [span[1]]]))
+    # An end may lie beside a posture by the last digit: points there would coincide, and have no way between them.
+    along = along[np.append(np.diff(along) > _SAME * (span[1] - span[0]), True)]
     parts = np.interp((along[1:] + along[:-1]) / 2, lane.along[1:-1], _parts(work, lane)).round().astype(np.int64)
     along = np.concatenate([*(np.linspace(a, b, n, endpoint=False)
                               for (a, b), n in zip(pairwise(along), parts, strict=True)), along[-1:]])
