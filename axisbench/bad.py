@@ -67,13 +67,13 @@ BAD: tuple[tuple[str, Spoil, str], ...] = (
     ("fixed-axis-dish", leave_out_passes, "times the scallop limit"),
     ("passes-dish", sink_a_pass, "gouge"),
     ("fixed-axis-plane", sink_one_point, "gouge"),
-    ("fixed-axis-wall", lean_into_the_wall, "is"),
-    ("passes-cylinder", skip_between_points, "gouge"),
+    ("fixed-axis-wall", lean_into_the_wall, "needed"),
+    ("passes-tube", skip_between_points, "gouge"),
     ("fixed-axis-oval", swing_the_axis, "axes: one is allowed"))
 
 
 def good_rows(problem: BenchmarkProblem) -> Array:
-    """A good entry as rows of pass, tip and axis, (n, 7), made quickly: iso-parametric passes by Roman's rule.
+    """A good entry as rows of pass, tip and axis, (n, 7), iso-parametric passes with the best axis.
 
     Parameters
     ----------
@@ -82,8 +82,7 @@ def good_rows(problem: BenchmarkProblem) -> Array:
     around = ta.Part.from_faces(problem.obstacles) if problem.obstacles else None
     given = None if problem.axis is None else [ta.SubSurface(1, axis=problem.axis, locked=True)]
     plan = ta.plan(problem.part, problem.tools[0], problem.scallop, tolerance=problem.tolerance, workers=1,
-                   obstacles=around, limits=problem.limits or None, division=given,
-                   method="sphere" if given else "roman")
+                   obstacles=around, limits=problem.limits or None, division=given)
     path = plan.operations[0].path
     if path is None:
         raise ta.InvalidInput(f"{problem.name}: {plan.operations[0].orientation.reasons[0]}")

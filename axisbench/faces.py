@@ -182,8 +182,8 @@ def _with_obstacles() -> dict[str, FaceData]:
 def _beyond_one_axis() -> dict[str, FaceData]:
     """Faces whose normals no hemisphere holds, so that one axis does not do."""
     low = (radians(-25), radians(35))
-    return {"roll": FaceData.from_surface(CylindricalSurface(22.0, (radians(-30), radians(210)), (0.0, 40.0)).nurbs()),
-            "zone": FaceData.from_surface(SphericalSurface(24.0, (0.0, radians(250)), low).nurbs()),
+    return {"roll": FaceData.from_surface(CylindricalSurface(22.0, (radians(-75), radians(255)), (0.0, 30.0)).nurbs()),
+            "zone": FaceData.from_surface(SphericalSurface(24.0, (0.0, radians(330)), low).nurbs()),
             "bend": FaceData.from_surface(ToroidalSurface(30.0, 14.0, (0.0, radians(100)),
                                                           (radians(-25), radians(205))).nurbs()),
             "barrel": FaceData.from_surface(ToroidalSurface(20.0, 19.0, (0.0, radians(230)),

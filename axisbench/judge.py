@@ -156,7 +156,14 @@ def _verdict_reasons(problem: BenchmarkProblem, verdicts: Sequence[OperationVerd
     reasons = [why for one in verdicts if not one.passed for why in one.reasons if " not checked: " not in why]
     if problem.is_part:
         reasons = [why for why in reasons if "scallop limit" not in why]
-    return reasons
+    return sorted(reasons, key=_gravity)
+
+
+def _gravity(reason: str) -> int:
+    """What is told first: collisions, then gouges, then what stays."""
+    if reason.split()[0] in ("cutter", "shank", "holder"):
+        return 0
+    return 2 if "scallop limit" in reason else 1
 
 
 def _rule_reasons(problem: BenchmarkProblem, entries: Sequence[CutterEntry]) -> list[str]:

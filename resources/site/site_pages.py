@@ -11,7 +11,7 @@ CONTENTS = {"Begin": ("install", "first-part", "freecad"),
             "The command": ("command", "batches"),
             "Scripts": ("python", "cad"),
             "In the shop": ("tools", "machines", "programs", "strategies"),
-            "Behind it": ("guarantees", "conventions", "theory")}
+            "Behind it": ("guarantees", "conventions", "theory", "axisbench")}
 #: What the theme says of itself below each page.
 CREDITS = ("https://www.sphinx-doc.org/", "https://pradyunsg.me", "https://github.com/pradyunsg/furo")
 #: Code, which keeps its dollars, or a formula: displayed, or within a line.
