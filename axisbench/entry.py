@@ -31,6 +31,8 @@ UNIT = 1e-4
 MOST_TURN = 5.0
 #: Axes that differ by less than this are one orientation, rad: CL files have nine digits.
 SAME_AXIS = 1e-6
+#: Tips lie no farther from the origin, mm.
+FARTHEST = 1e4
 #: Rows at most.
 MOST_ROWS = 300_000
 #: How far above everything the tool is taken across, mm, and how far it may turn on one of the steps there, rad.
@@ -98,6 +100,10 @@ def read_entry(path: Path, problem: BenchmarkProblem) -> tuple[CutterEntry, ...]
         tool, group, rows = _read_apt(path, problem)
     _check_rows(path, rows, group)
     starts = [0, *(np.flatnonzero(np.diff(tool)) + 1), len(tool)]
+    for a, b in pairwise(starts):
+        if not ((group[a + 1:b] == group[a:b - 1]) & (group[a + 1:b] > 0)).any():
+            raise BadEntry(f"{path.name} row {a + 1}: no pass begins here; a pass needs two rows or more with the same "
+                           "number from 1")
     return tuple(_make_entry(path, problem, int(tool[a]), group[a:b], rows[a:b])
                  for a, b in pairwise(starts))
 
@@ -164,8 +170,11 @@ def _check_rows(path: Path, rows: Array, group: NDArray[np.int64]) -> None:
     if wrong.size:
         raise BadEntry(f"{path.name} row {wrong[0] + 1}: the axis is {length[wrong[0]]:.6g} long; i,j,k must be a unit "
                        f"vector to {UNIT:g}, from the tip to the spindle")
-    if not (group > 0).any():
-        raise BadEntry(f"{path.name} has no pass: rows that cut need a pass number from 1")
+    far = np.abs(rows[:, :3]).max(axis=1)
+    wrong = np.flatnonzero(far > FARTHEST)
+    if wrong.size:
+        raise BadEntry(f"{path.name} row {wrong[0] + 1}: the tip is {far[wrong[0]]:.6g} mm away; at most {FARTHEST:g} "
+                       "mm are judged: x,y,z must be mm in the coordinates of the face")
     turned = np.degrees(angle_between(unit(rows[1:, 3:]), unit(rows[:-1, 3:])))
     wrong = np.flatnonzero((turned > MOST_TURN) & (group[1:] == group[:-1]) & (group[1:] > 0))
     if wrong.size:

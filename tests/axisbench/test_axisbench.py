@@ -159,7 +159,9 @@ def test_another_axis_than_the_given_one_fails(tmp_path: Path) -> None:
     ("pass,x,y,z,i,j,k\n1,0,0,0,0,0,1\n1,a,0,0,0,0,1\n", "row 2 is '1,a,0,0,0,0,1': every column must be a number"),
     ("pass,x,y,z,i,j,k\n1,0,0,0,0,0,1\n1,1,0,0,0,0,2\n", "row 2: the axis is 2 long"),
     ("pass,x,y,z,i,j,k\n1.5,0,0,0,0,0,1\n1,1,0,0,0,0,1\n", "row 1: pass is 1.5"),
-    ("pass,x,y,z,i,j,k\n0,0,0,0,0,0,1\n0,1,0,0,0,0,1\n", "has no pass"),
+    ("pass,x,y,z,i,j,k\n0,0,0,0,0,0,1\n0,1,0,0,0,0,1\n", "row 1: no pass begins here"),
+    ("pass,x,y,z,i,j,k\n1,0,0,0,0,0,1\n2,1,0,0,0,0,1\n", "row 1: no pass begins here"),
+    ("pass,x,y,z,i,j,k\n1,0,0,0,0,0,1\n1,1e9,0,0,0,0,1\n", "row 2: the tip is 1e+09 mm away"),
     ("pass,x,y,z,i,j,k\n1,0,0,0,0,0,1\n1,1,0,0,0,0.6,0.8\n", "row 2: the axis turns by 36.9 deg")])
 def test_what_cannot_be_judged_is_refused_in_a_sentence(text: str, words: str, tmp_path: Path) -> None:
     (tmp_path / f"{PLANE}.csv").write_text(text)
@@ -220,3 +222,25 @@ def test_the_tables_of_the_readme_count_what_there_is() -> None:
     assert [int(value) for value in told.groups()] == [len(build_faces()), len({p.data for p in problems if p.is_part}),
                                                        len(problems)]
     assert all(f"`{task}`" in README for task in TASKS)
+
+
+def test_a_tool_that_the_part_has_not_is_refused(tmp_path: Path) -> None:
+    name = "whole-part-mould"
+    (tmp_path / f"{name}.csv").write_text("tool,pass,x,y,z,i,j,k\n2,1,0,0,50,0,0,1\n2,1,1,0,50,0,0,1\n")
+    with pytest.raises(BadEntry, match="row 1: tool is 2; it must be a whole number from 1 to 1"):
+        read_entry(tmp_path / f"{name}.csv", problem_named(name))
+
+
+def test_an_apt_file_is_an_entry_too(tmp_path: Path) -> None:
+    rows = plane_rows()
+    lines = ["PARTNO/PLANE", "UNITS/MM", "MULTAX/ON"]
+    for number in range(1, 20):
+        here = rows[rows[:, 0] == number, 1:]
+        high = here[0, :3] + 60 * here[0, 3:], here[-1, :3] + 60 * here[-1, 3:]
+        goto = [f"GOTO/{','.join(f'{value:.6f}' for value in (*tip, *here[0, 3:]))}"
+                for tip in (high[0], *here[:, :3], high[1])]
+        lines += ["RAPID", goto[0], "RAPID", goto[1], "FEDRAT/1000,MMPM", *goto[2:-1], "RAPID", goto[-1]]
+    (tmp_path / f"{PLANE}.apt").write_text("\n".join([*lines, "FINI"]) + "\n")
+    found = score_file(tmp_path / f"{PLANE}.apt")
+    assert found.judged is not None and found.judged.passed and found.judged.passes == 19, found.reason
+    assert found.score == pytest.approx(plane_score(tmp_path, rows).score, rel=1e-3)
