@@ -170,7 +170,7 @@ def _with_obstacles() -> dict[str, FaceData]:
     coefficients = [(half**2) * np.array([1.0, -1.0, 1.0]) for half in (24.0, 18.0)]
     saddle = np.stack([x, y, coefficients[0][:, None] / 160 - coefficients[1][None, :] / 110], axis=-1)
     along, up = np.meshgrid([-40.0, 40.0], [-10.0, 45.0], indexing="ij")
-    wall = FaceData(np.stack([along, np.full((2, 2), 19.0), up], axis=-1), (1, 1))
+    wall = FaceData(np.stack([along, np.full((2, 2), 30.0), up], axis=-1), (1, 1))
     post = FaceData.from_surface(CylindricalSurface(4.0, (0.0, 2 * pi), (-15.0, 20.0)).nurbs())
     bump = np.stack([x * 1.2, y * 1.3, -coefficients[0][:, None] / 140 - coefficients[1][None, :] / 180], axis=-1)
     hole = _oval((0.5, 0.5), (0.28, 0.34))[::-1]

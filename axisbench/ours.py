@@ -9,7 +9,8 @@ fixed axis.  whole-part: a rack.
 import csv
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -176,8 +177,14 @@ def _make_passes(problem: BenchmarkProblem, method: str) -> tuple[Paths, float]:
     assert problem.axis is not None
     if method == "offset":
         return [(0, _shortest_offset(problem))], 0.0
-    given = [ta.SubSurface(1, axis=problem.axis, locked=True)]
-    return _paths_of(_plan(problem, division=given, passes={"field": "scallop"}.get(method, method)))
+    made = []
+    for feed in ("u", "v") if method != "field" else ("",):
+        given = [ta.SubSurface(1, axis=problem.axis, feed=feed, locked=True)]
+        with suppress(ToolAxisError):
+            made.append(_plan(problem, division=given, passes={"field": "scallop"}.get(method, method)))
+    if not made:
+        raise ta.InvalidInput("passes cannot be laid along u nor along v with the given axis")
+    return _paths_of(min(made, key=lambda plan: plan.length))
 
 
 def _make_orientations(problem: BenchmarkProblem, method: str) -> tuple[Paths, float]:
@@ -300,8 +307,26 @@ def print_task(task: str, made: dict[str, list[MadeEntry]]) -> None:
         for text in one.printed:
             print(f"    printed    {text}")
     if rows:
-        with (RESULTS / f"{task}.csv").open("w", newline="", encoding="utf-8") as file:
-            table = csv.DictWriter(file, rows[0], lineterminator="\n")
-            table.writeheader()
-            table.writerows(rows)
+        write_table(RESULTS / f"{task}.csv", rows)
+
+
+def write_table(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
+    """Write a table of results; rows of problems that it has and these have not are kept.
+
+    Parameters
+    ----------
+    path : Path
+    rows : sequence of mapping
+    """
+    known: list[Mapping[str, str]] = []
+    if path.is_file():
+        with path.open(newline="", encoding="utf-8") as file:
+            known = list(csv.DictReader(file))
+    fresh = {row["problem"] for row in rows}
+    order = {name: k for k, name in enumerate(load_problems())}
+    every = [row for row in known if row["problem"] in order and row["problem"] not in fresh] + list(rows)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n", restval="", extrasaction="ignore")
+        table.writeheader()
+        table.writerows(sorted(every, key=lambda row: order[row["problem"]]))
 
