@@ -116,6 +116,8 @@ def score_bad_entries(folder: Path, workers: int) -> int:
         Processes.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    for path in folder.glob("*.csv"):
+        path.unlink()
     for name, spoil, _ in BAD:
         write_rows(folder / f"{name}.csv", spoil(problem_named(name), good_rows(problem_named(name))))
     print("\nbad entries: each must score 0")
