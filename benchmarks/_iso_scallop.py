@@ -60,23 +60,38 @@ def length_from_border(face: Face, cut: Cut, border: Border) -> float:
     cut : Cut
     border : Border
     """
+    lines = iso_scallop_passes(face, cut, border)
+    return np.inf if lines is None else sum(_length_inside(face, cut, uv) for uv in lines)
+
+
+def iso_scallop_passes(face: Face, cut: Cut, border: Border, most: int = MOST) -> list[Array] | None:
+    """Contacts of the passes from one border, (n, 2) parameters each; None where they do not get across.
+
+    Parameters
+    ----------
+    face : Face
+    cut : Cut
+    border : Border
+    most : int
+        Passes at most.
+    """
     ends = np.array(face.bounds).reshape(2, 2)
     low, high = ends[border.across]
     along = np.linspace(*ends[1 - border.across], LINES)
     sense = -1.0 if border.back else 1.0
     front = np.full(LINES, high if border.back else low)
     front = _advance(face, cut, border, along, front, 1)
-    total = 0.0
-    for _ in range(MOST):
+    found: list[Array] = []
+    for _ in range(most):
         if not np.isfinite(front).all():
-            return np.inf
-        total += _length_inside(face, cut, _join(border, along, front))
+            return None
+        found.append(_join(border, along, front))
         if (sense * (front - (low if border.back else high)) >= 0).all():
-            return total
+            return found
         after = _advance(face, cut, border, along, front, 2)
         least = LEAST * (high - low)
         front = sense * np.maximum(sense * after, sense * front + least)
-    return np.inf
+    return None
 
 
 def _join(border: Border, along: Array, front: Array) -> Array:

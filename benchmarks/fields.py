@@ -151,11 +151,20 @@ def part_of(job: FaceJob) -> ta.Part:
     """
     if not job.name.startswith("seed "):
         return ta.load(FOLDER / f"{job.name}.step")
-    rng = np.random.default_rng(int(job.name.split()[1]))
+    return ta.Part.from_faces([Face.from_bspline(patch_points(int(job.name.split()[1])))])
+
+
+def patch_points(seed: int) -> Array:
+    """Control points of a random bicubic patch, (6, 5, 3) mm.
+
+    Parameters
+    ----------
+    seed : int
+    """
+    rng = np.random.default_rng(seed)
     x, y = np.meshgrid(np.linspace(0, 60, 6), np.linspace(0, 45, 5), indexing="ij")
     lean, height = rng.uniform(-0.3, 0.3, 2), rng.uniform(1, 6)
-    points = np.stack([x, y, lean[0] * x + lean[1] * y + height * rng.uniform(-1, 1, x.shape)], axis=-1)
-    return ta.Part.from_faces([Face.from_bspline(points)])
+    return np.stack([x, y, lean[0] * x + lean[1] * y + height * rng.uniform(-1, 1, x.shape)], axis=-1)
 
 
 def figures(part: ta.Part, job: FaceJob, passes: str, machine: Machine) -> PassFigures:

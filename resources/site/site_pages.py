@@ -11,9 +11,9 @@ CONTENTS = {"Begin": ("install", "first-part", "freecad"),
             "The command": ("command", "batches"),
             "Scripts": ("python", "cad"),
             "In the shop": ("tools", "machines", "programs", "strategies"),
-            "Behind it": ("guarantees", "conventions", "theory"),
-            "The papers": ("papers", "papers-zhu-2016", "papers-grandguillaume-2021", "papers-jang-2021",
-                           "papers-dong-2023", "papers-stheta-2023")}
+             "Behind it": ("guarantees", "conventions", "theory", "axisbench"),
+             "The papers": ("papers", "papers-zhu-2016", "papers-grandguillaume-2021", "papers-jang-2021",
+                            "papers-dong-2023", "papers-stheta-2023")}
 #: What the theme says of itself below each page.
 CREDITS = ("https://www.sphinx-doc.org/", "https://pradyunsg.me", "https://github.com/pradyunsg/furo")
 #: Code, which keeps its dollars, or a formula: displayed, or within a line.
