@@ -13,6 +13,7 @@ from toolaxis.numeric.polygon_boolean import (
     cut_spikes,
     divide_nearly,
     divide_polygon,
+    join_touching,
     unite_polygons,
     without,
 )
@@ -161,3 +162,15 @@ def test_a_polygon_with_a_spike_divides_as_without_it(seed: int) -> None:
 
 def test_nothing_is_left_of_a_loop_that_only_goes_there_and_back() -> None:
     assert len(cut_spikes(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]]))) < 3
+
+
+def test_borders_that_loops_share_cancel_out() -> None:
+    """Two squares side by side, the second with a corner more, and a hole that runs along the border of the first."""
+    beside = np.array([[4.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 4.0], [4.0, 1.5]])
+    notch = np.array([[0.0, 1.0], [1.0, 2.0], [0.0, 3.0]])
+    (joined,) = join_touching((SQUARE, beside, notch))
+    assert abs(signed_area(joined)) == pytest.approx(31.0, abs=1e-12)
+    places = np.random.default_rng(5).uniform(-1, 9, (2000, 2))
+    odd = sum(inside(slabs((loop,)), places).astype(int) for loop in (SQUARE, beside, notch)) % 2 == 1
+    assert (inside(slabs((joined,)), places) == odd).all()
+    assert divide_polygon((joined,), (circle(4, 2, 1),))[0]

@@ -1,5 +1,6 @@
 """Polygons with holes divided by other polygons: what lies inside them, and what outside."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -269,10 +270,28 @@ def unite_polygons(loops: Loops, beside: Loops) -> Loops:
     return _not_in_both(loops, beside)
 
 
+def join_touching(loops: Loops) -> Loops:
+    """The same polygon without edges that two of its loops have, or that one loop runs along twice: they cancel out.
+
+    Parameters
+    ----------
+    loops : tuple of (m, 2) arrays
+        Closed loops, of several polygons side by side too; corners along shared borders agree exactly.
+
+    **Properties**: 1. the same points lie inside an odd number of loops.
+    """
+    return _single_edges(_with_corners(loops, loops))
+
+
 def _not_in_both(loops: Loops, others: Loops) -> Loops:
     """Closed loops of the edges that only one of two polygons has."""
+    return _single_edges([*_with_corners(loops, others), *_with_corners(others, loops)])
+
+
+def _single_edges(loops: Sequence[Array]) -> Loops:
+    """Closed loops of the edges that an odd number of loops has."""
     edges: dict[Edge, None] = {}
-    for loop in (*_with_corners(loops, others), *_with_corners(others, loops)):
+    for loop in loops:
         rows = [(float(x), float(y)) for x, y in loop]
         for a, b in zip(rows, [*rows[1:], rows[0]], strict=True):
             if (a, b) in edges:

@@ -1,15 +1,19 @@
 """The part's own faces under a skin, or under a piece of one."""
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
-from toolaxis.numeric.polygon_boolean import divide_nearly, without
-from toolaxis.numeric.polygons import polygon_area, signed_area, stations, walk
+from toolaxis.numeric.polygon_boolean import divide_nearly, join_touching, without
+from toolaxis.numeric.polygons import polygon_area, signed_area
 from toolaxis.shape.face import Face, Member
 from toolaxis.shape.joining.joined_surface import name_of
 from toolaxis.skin.covered_parts import Loops
+from toolaxis.skin.portions import Portion, carry_into_parameters, open_portions
 from toolaxis.skin.seen_face import SeenFace
 from toolaxis.skin.view_surface import ViewSurface
 
@@ -17,8 +21,6 @@ Array = NDArray[np.float64]
 
 #: Share of a member's area in its parameters that may be missing of the whole.
 _WHOLE = 1e-6
-#: Pieces of the longest side of a loop that is carried over to a member's own parameters.
-_DIVIDED = 128
 
 
 def own_pieces(face: Face, only_exact: bool = False) -> tuple[Face, ...]:
@@ -72,65 +74,90 @@ def _own(member: Member, uv: Array) -> Array:
 
 def _in_view(face: Face, surface: ViewSurface, letters: str, only_exact: bool) -> tuple[Face, ...]:
     """Pieces of the members of a face whose parameters are places in a plane."""
-    loops = face.outline
+    of_piece = None if face.fills_outline else outer_with_holes(join_touching(face.outline))
     pieces: list[Face] = []
     for seen, covered in zip(surface.seen, surface.covered, strict=True):
-        visible = seen.outline
-        for hidden in covered:
-            visible = without(visible, hidden)
-        parts: list[Loops] | None = [visible]
-        if not face.fills_outline:
-            parts = _common(visible, loops)
-        elif covered:
-            parts = outer_with_holes(visible)
-        if parts is not None and any(part is seen.outline for part in parts):
-            pieces.append(seen.face)
-            continue
-        own = None if parts is None else _carry_over_all(seen, parts)
+        own = _cut_member(seen, covered, of_piece)
         if own is None:
             pieces += [] if only_exact else [seen.face]
+        elif own.whole:
+            pieces.append(seen.face)
         else:
-            pieces += [seen.face.trimmed(part, seen.face.label + letters) for part in own]
+            pieces += [seen.face.trimmed(part, seen.face.label + letters) for part in own.parts]
     return tuple(pieces)
 
 
-def _carry_over_all(seen: SeenFace, parts: list[Loops]) -> list[Loops] | None:
-    """Polygons of the plane in a face's own parameters; None where one of them cannot be carried over."""
+class _CutMember(NamedTuple):
+    """What of a member belongs to a piece: polygons in its own parameters, and whether that is all of it."""
+
+    parts: list[Loops]
+    whole: bool
+
+
+def _cut_member(seen: SeenFace, covered: Sequence[Loops], of_piece: Sequence[Loops] | None) -> _CutMember | None:
+    """What of a member belongs to polygons in the plane, or to the whole skin: its portions one after the other where
+    it is closed, as its outline in the plane runs along its seam twice; None if unknown."""
+    if of_piece is None and not covered:
+        return _CutMember([], True)
+    cut: list[tuple[Portion, list[Loops]]] = []
+    whole = not covered
+    for portion in open_portions(seen):
+        try:
+            visible = _uncover(portion, covered)
+            parts = outer_with_holes(visible) if of_piece is None or not visible else _common(visible, of_piece)
+        except InvalidInput:
+            return None
+        whole = whole and len(parts) == 1 and parts[0] is visible
+        cut.append((portion, parts))
+    if whole or not cut:
+        return _CutMember([], True)
     found: list[Loops] = []
-    for part in parts:
-        own = [_carry_over(seen, loop) for loop in part]
+    for portion, part in ((portion, part) for portion, parts in cut for part in parts):
+        own = [carry_into_parameters(portion, loop) for loop in part]
         known = tuple(loop for loop in own if loop is not None)
         if len(known) < len(own):
             return None
         found.append(known)
-    return found
+    return _CutMember(found, False)
 
 
-def _common(member: Loops, piece: Loops) -> list[Loops] | None:
-    """What two polygons with holes have in common, the first one itself where that is all of it; None if unknown."""
-    corners = (np.concatenate(loops) for loops in (member, piece))  # of all parts where a piece falls apart
-    box, other = (np.stack([one.min(axis=0), one.max(axis=0)]) for one in corners)
-    if (box[0] > other[1]).any() or (other[0] > box[1]).any():
-        return []
-    try:
-        both, apart = divide_nearly(member, piece)
-    except InvalidInput:
-        return None
-    if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * polygon_area(member)]:
-        return [member]
-    least = _WHOLE * min(polygon_area(member), polygon_area(piece))
-    return [part for part in outer_with_holes(both) if polygon_area(part) > least]
+def _uncover(portion: Portion, covered: Sequence[Loops]) -> Loops:
+    """The outline of a portion less what other members lie above.
 
-
-def _carry_over(seen: SeenFace, loop: Array) -> Array | None:
-    """A loop of the plane in a face's own parameters; None where the face is closed and the loop goes through its seam.
+    Raises
+    ------
+    InvalidInput
+        When their borders cannot be told apart.
     """
-    size = np.ptp(loop, axis=0) / _DIVIDED
-    fine = walk(loop, stations(loop, (float(size[0]), float(size[1]))))
-    uv = seen.find(fine)
-    u0, u1, v0, v1 = seen.face.bounds
-    uv = np.clip(uv, [u0, v0], [u1, v1])
-    step = np.abs(np.roll(uv, -1, axis=0) - uv).max(axis=0)
-    if (step > 0.5 * np.array([u1 - u0, v1 - v0])).any() and np.isfinite(seen.periods).any():
-        return None
-    return uv if len(uv) > 2 and signed_area(uv) != 0 else None
+    loops = portion.outline
+    for hidden in covered:
+        # What hides an open face was cut out of its very outline.
+        loops = divide_nearly(loops, hidden)[1] if portion.of_closed else without(loops, hidden)
+    return loops
+
+
+def _common(member: Loops, parts: Sequence[Loops]) -> list[Loops]:
+    """What a polygon with holes and others, which do not overlap, have in common; the first one itself where that is
+    all of it.
+
+    One of these after the other: their borders may coincide.
+
+    Raises
+    ------
+    InvalidInput
+        When borders cannot be told apart.
+    """
+    found: list[Loops] = []
+    whole = polygon_area(member)
+    for part in parts:
+        box, other = (np.stack([one.min(axis=0), one.max(axis=0)]) for one in map(np.concatenate, (member, part)))
+        if (box[0] > other[1]).any() or (other[0] > box[1]).any():
+            continue
+        both, apart = divide_nearly(member, part)
+        if not [loop for loop in apart if abs(signed_area(loop)) > _WHOLE * whole]:
+            return [member]
+        least = _WHOLE * min(whole, polygon_area(part))
+        found += [one for one in outer_with_holes(both) if polygon_area(one) > least]
+    if abs(sum(map(polygon_area, found)) - whole) <= _WHOLE * whole:
+        return [member]
+    return found
