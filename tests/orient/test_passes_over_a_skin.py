@@ -1,5 +1,7 @@
 """Passes over a skin whose curvature jumps: strips are told from a smooth spline, and laid closer where it misleads."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.path.mending import FurtherPasses
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED
+from toolaxis.plan.zone import Zone
 from toolaxis.search import candidate_check
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.shape.face import Face
@@ -59,9 +62,9 @@ def test_passes_lie_closer_where_a_skin_would_stay_high(monkeypatch: pytest.Monk
     tried: list[float] = []
     whole = candidate_check._find_closer_share
 
-    def _watched(job: FaceProblem, made: FurtherPasses) -> float | None:
+    def _watched(job: FaceProblem, made: FurtherPasses, left: Sequence[Zone]) -> float | None:
         tried.append(job.laid_for)
-        return whole(job, made)
+        return whole(job, made, left)
 
     monkeypatch.setattr(candidate_check, "_find_closer_share", _watched)
     part = step()

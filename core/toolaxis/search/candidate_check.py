@@ -1,5 +1,6 @@
 """One axis put to the proof: its passes made, completed and proven, and laid closer where too much would stay high."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from toolaxis.path.pass_pattern import pattern_name
 from toolaxis.path.rest_material import FACTOR, OVERLOOKED, Excess, may_stay
 from toolaxis.plan.choices import FEEDS
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.zone import Zone
 from toolaxis.search.face_problem import CROSSING, FaceProblem
 from toolaxis.search.local_search import CountedAxis
 from toolaxis.search.machine_limits import machine_violation
@@ -31,8 +33,8 @@ Array = NDArray[np.float64]
 _LEFT_OUT = 3
 #: Share of a face up to which places that no further pass cuts go to the clean-up tool that has to come anyway.
 _MAY_LEAVE = 0.01
-#: Places on a face that tell how much stays high between passes over a skin; of how many places of its range they are
-#: taken at most, and how many of these at once.
+#: Places on a face that tell how much stays high between passes; of how many places of its range they are taken at most,
+#: and how many of these at once.
 _SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
 #: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
 _SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
@@ -96,7 +98,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
         else:  # further passes are no reason to refuse an axis
             made = FurtherPasses(placed, plain, job.left_by(plain, placed))
     if proof.witness is None:
-        closer = _find_closer_share(job, made)
+        closer = _find_closer_share(job, made, made.zones)
         if closer is not None and job.laid_for > _CLOSEST:
             return check_candidate(replace(job, laid_for=max(closer, _CLOSEST)), one)
         if closer is not None:
@@ -105,6 +107,10 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if made.undercut > may_stay(made.zones, area):
         made = _leave_corners(made, area)
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
+        # Strips may be narrower between the places at which they were measured; a hollow stays high all the same.
+        closer = _find_closer_share(job, made, [zone for zone in made.zones if zone.at_wall])
+        if job.laid_for == 1 and closer is not None and closer > _CLOSEST:
+            return check_candidate(replace(job, laid_for=closer), one)
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
     unreached = min((made.left - made.undercut) / area, 1.0)
     length = path.length(Motion.CUT)
@@ -145,18 +151,18 @@ def _find_blocked_way_up(job: FaceProblem, axis: Array) -> Violation | None:
     return None if free.any() else stuck
 
 
-def _find_closer_share(job: FaceProblem, made: FurtherPasses) -> float | None:
-    """Share of the scallop height for which passes have to be laid so that no more stays high than may.
+def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zone]) -> float | None:
+    """Share of the scallop height for which passes have to be laid so that no more stays high than may, zones that are
+    left apart.
 
-    None where those that were made do.  That is told from samples, as ridges between passes are thinner than any cell;
-    only where strips are measured on what stands for a skin can too much stay.  A ridge is as high as the square of the
-    width of its strip, and so in proportion to the height for which that strip was laid.
+    None where those that were made do.  That is told from samples, as ridges between passes are thinner than any cell.
+    Too much can stay where strips are measured on what stands for a skin, and where a strip is narrower between the
+    places at which it was measured.  A ridge is as high as the square of the width of its strip, and so in proportion
+    to the height for which that strip was laid.
     """
     worth = job.worth
-    if worth.face.surface.stand_in is None:
-        return None
     uv = _scatter_places(worth.face, _SAMPLES)
-    for zone in made.zones:
+    for zone in left:
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
     if not len(uv):
         return None
