@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 _LEFT_OUT = 3
 #: Share of a face up to which places that no further pass cuts go to the clean-up tool that has to come anyway.
 _MAY_LEAVE = 0.01
-#: Places on a face that tell how much stays high between passes; of how many places of its range they are taken at most,
-#: and how many of these at once.
+#: Places on a face that tell how much stays high between passes; of how many places of its range they are taken at
+#: most, and how many of these at once.
 _SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
 #: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
 _SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
