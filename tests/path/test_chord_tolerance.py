@@ -30,3 +30,18 @@ def test_no_more_points_than_help_where_the_normal_jumps_to_and_fro() -> None:
     assert (along[0], along[-1]) == tuple(PASS[0, :2]) and (np.diff(along) > 0).all()
     assert np.diff(along).min() < 1e-6, "else the band is not found"
     assert len(along) < 1000
+
+
+def test_bulges_between_far_places_are_followed() -> None:
+    """Found: a bulge 1 mm long on a pass of 60 mm was cut off by straight motions, and its axis refused for a gouge."""
+    x, y = np.meshgrid(np.linspace(0, 60, 241), [0.0, 5.0, 10.0, 15.0], indexing="ij")
+    bulges = sum(np.exp(-(((x - middle) / 0.6) ** 2)) for middle in (11.3, 31.3, 51.3))
+    face = Face.from_bspline(np.stack([x, y, 0.03 * bulges], axis=-1))
+    chart, cut, chord = IsoChart(face, "u"), Cut(Tool.ball(6), UP, 0.02), 1e-3
+    _, along = follow(chart, cut, np.array([[0.0, 1.0, 0.5]]), chord)
+    dense = np.linspace(0, 1, 20_001)
+    contact = face.evaluate(chart.uv(dense, np.full(len(dense), 0.5))).point
+    nodes = face.evaluate(chart.uv(along, np.full(len(along), 0.5))).point
+    lower = np.interp(contact[:, 0], nodes[:, 0], nodes[:, 2])
+    assert np.abs(contact[:, 2] - lower).max() < 1.05 * chord
+    assert len(along) < 200, "points lie close at the bulges alone"

@@ -1,5 +1,7 @@
 """Points along curves, close enough that no chord of contacts, tips or moving axes leaves them by the tolerance."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +18,11 @@ _ROUNDS = 12
 #: Gaps shorter than this share of the face are not divided: where chords still leave the curve there, the normal jumps,
 #: and one of the motions has the jump in it however many there are.
 _LEAST_GAP = 1e-7
-_PROBES = np.array([0.25, 0.5, 0.75])
+#: Inner places of a gap at which the curve is looked at: so many at least, more in gaps that are longer than the
+#: surface's own stretches between knots, within which a bulge would be overlooked, and so many at most.
+_LEAST_PROBES, _MOST_PROBES = 3, 48
+#: Inner places of a motion between points, as shares.
+_QUARTERS = np.array([0.25, 0.5, 0.75])
 #: Gaps, or motions, that are looked at together.
 _GAPS = 20_000
 
@@ -42,6 +48,8 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     """
     share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
     least = _LEAST_GAP * (chart.bounds[1] - chart.bounds[0])
+    surface = chart.face.surface.stand_in or chart.face.surface
+    stretch = (chart.bounds[1] - chart.bounds[0]) / (1 + max(map(len, surface.breaks)))
     ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
     owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
     low, high = ends[:, :-1].ravel(), ends[:, 1:].ravel()
@@ -49,7 +57,9 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     for _ in range(_ROUNDS):
         if not len(owner):
             break
-        away = in_blocks(lambda *gaps: _deviations(chart, cut, *gaps), low, high, pieces[owner, 2], size=_GAPS)
+        probes = _probes(float((high - low).max()) / stretch)
+        away = in_blocks(partial(_deviations, chart, cut, probes), low, high, pieces[owner, 2],
+                         size=max(_GAPS * _LEAST_PROBES // len(probes), 1))
         parts = np.minimum(np.ceil(1.05 * np.sqrt(away / chord)), np.ceil((high - low) / least))
         fine = parts <= 1.05
         done_owner.append(owner[fine])
@@ -60,6 +70,12 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     piece, along = np.concatenate(done_owner), np.concatenate(done_low)
     order = np.lexsort((along, piece))
     return piece[order], along[order]
+
+
+def _probes(stretches: float) -> Array:
+    """Inner places of gaps that are as long as so many stretches between knots, as shares."""
+    count = int(np.clip(np.ceil(stretches), _LEAST_PROBES, _MOST_PROBES))
+    return np.arange(1, count + 1) / (count + 1)
 
 
 def rises(chart: Chart, cut: Cut, steps: Array, points: tuple[Index, Array], tip: Array) -> Array:
@@ -95,8 +111,8 @@ def rises(chart: Chart, cut: Cut, steps: Array, points: tuple[Index, Array], tip
 
 def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array, begin: Array, end: Array) -> Array:
     """How far straight motions of the tip from begin to end, at low and high, stay above the pass at most, (m,) mm."""
-    along = (low[:, None] + (high - low)[:, None] * _PROBES).ravel()
-    contact, _, normal = tip_points(chart, cut, along, np.repeat(step, len(_PROBES)))
+    along = (low[:, None] + (high - low)[:, None] * _QUARTERS).ravel()
+    contact, _, normal = tip_points(chart, cut, along, np.repeat(step, len(_QUARTERS)))
     first, last = (np.broadcast_to(cut.axes(chart.face, chart.uv(place, step)), begin.shape) for place in (low, high))
     touching = tips(contact, normal, unit(_between(first, last)), cut.tool, cut.allowance)
     return np.asarray(((_between(begin, end) - touching) * normal).sum(axis=1).reshape(len(low), -1).max(axis=1))
@@ -104,7 +120,7 @@ def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array, 
 
 def _between(begin: Array, end: Array) -> Array:
     """Places of straight motions from begin (m, 3) to end, one motion after the other, (m k, 3)."""
-    return np.asarray(begin[:, None] + (end - begin)[:, None] * _PROBES[:, None]).reshape(-1, 3)
+    return np.asarray(begin[:, None] + (end - begin)[:, None] * _QUARTERS[:, None]).reshape(-1, 3)
 
 
 def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:
@@ -114,9 +130,9 @@ def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> 
     return owner[source], low[source] + place * gap, low[source] + (place + 1) * gap
 
 
-def _deviations(chart: Chart, cut: Cut, low: Array, high: Array, step: Array) -> Array:
-    """Greatest distance of what is followed from the chords at three inner places of each gap, mm."""
-    places = np.concatenate([[0.0], _PROBES, [1.0]])
+def _deviations(chart: Chart, cut: Cut, probes: Array, low: Array, high: Array, step: Array) -> Array:
+    """Greatest distance of what is followed from the chords at inner places of each gap, mm."""
+    places = np.concatenate([[0.0], probes, [1.0]])
     along = (low[:, None] + (high - low)[:, None] * places).ravel()
     steps = np.repeat(step, len(places))
     contact, tip, _ = tip_points(chart, cut, along, steps)
