@@ -18,7 +18,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
-from toolaxis.search.candidate_check import check_candidate
+from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem, task
 from toolaxis.search.local_search import count_row
@@ -145,13 +145,21 @@ def evaluate_given_axis(task: FaceProblem, axis: ArrayLike, feed: str | None = N
     if witness is None:
         ledger = AxisTable(task.feasibility, task.worth, task.progress)
         ledger.look(t[None])
-        done = check_candidate(task, count_row(ledger, 0, None if feed is None else FEEDS.index(feed)))
+        done = _prove_feeds(task, ledger, feed)
         found, path, witness = done.orientation, done.path, done.proof.witness
     task.progress.check()
     if witness is not None:
         reasons = (f"infeasible: {sentence(witness, task.feasibility)}",)
         return Orientation(None, found.feed, outcome="infeasible", reasons=reasons), None
     return found, path
+
+
+def _prove_feeds(task: FaceProblem, ledger: AxisTable, feed: str | None) -> CheckedCandidate:
+    """The passes of the only axis of a ledger with the feed that is given, or that turns out to be the better one."""
+    feeds = range(len(FEEDS)) if feed is None else [FEEDS.index(feed)]
+    checked = [check_candidate(task, count_row(ledger, 0, k)) for k in feeds]
+    proven = [one for one in checked if one.proof.witness is None]
+    return min(proven or checked, key=lambda one: one.value)
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
