@@ -237,7 +237,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         inputs.check_rack(rack.tools)
     else:
         inputs.check_tool(cutter)
-    progress.report("reading the part", 0, 0)
+    _tell(progress, "reading the part")
     loaded = inputs.prepare_part(load(part))
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
@@ -246,12 +246,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         check_rack_inputs(RackInputs(method, chosen.moves, regions, orientations is not None, bool(given),
                                      compare))
         if not asked:
-            progress.report("looking for blades", 0, 0)
+            _tell(progress, "looking for blades")
             pattern = _find_blades(loaded, progress)
             faces = "skins" if pattern is None else None
     if pattern is not None:
         loaded = pattern.part
-    progress.report("joining faces", 0, 0)
+    _tell(progress, "joining faces")
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
                                  WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
@@ -281,6 +281,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     whole = faces is None and untouched and method in METHODS
     made = _plan_part(job, free, (whole, compare), progress)
     return _tell_apart(_order_operations(made, progress), free, in_clamping)
+
+
+def _tell(progress: Progress, stage: str) -> None:
+    """Report a step before the first face; whoever stops then gets a plan without operations from the next one."""
+    with suppress(Cancelled):
+        progress.report(stage, 0, 0)
 
 
 def _check_most_tools(most_tools: int | None) -> None:
@@ -351,8 +357,8 @@ def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[
     """The plan of a job with each of several tools: blade by blade where there is a pattern, with so many at most."""
     pattern, most = asked
     with activate_progress(progress):
-        _in_cells(jobs[0], progress)
         try:
+            _in_cells(jobs[0], progress)
             if pattern is not None:
                 made = plan_blades_with_rack(jobs, pattern, most, progress)
             else:
