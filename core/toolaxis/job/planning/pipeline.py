@@ -237,7 +237,6 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         inputs.check_rack(rack.tools)
     else:
         inputs.check_tool(cutter)
-    _tell(progress, "reading the part")
     loaded = inputs.prepare_part(load(part))
     asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
