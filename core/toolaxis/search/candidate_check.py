@@ -107,7 +107,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     if made.undercut > may_stay(made.zones, area):
         made = _leave_corners(made, area)
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
-        # Strips may be narrower between the places at which they were measured; a hollow stays high all the same.
+        # Closer passes help where a strip is narrower than it was measured, and not in a hollow: they are tried once.
         closer = _find_closer_share(job, made, [zone for zone in made.zones if zone.at_wall])
         if job.laid_for == 1 and closer is not None and closer > _CLOSEST:
             return check_candidate(replace(job, laid_for=closer), one)
@@ -152,8 +152,8 @@ def _find_blocked_way_up(job: FaceProblem, axis: Array) -> Violation | None:
 
 
 def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zone]) -> float | None:
-    """Share of the scallop height for which passes have to be laid so that no more stays high than may, zones that are
-    left apart.
+    """Share of the scallop height for which passes have to be laid so that no more stays high than may, outside of the
+    zones that are left.
 
     None where those that were made do.  That is told from samples, as ridges between passes are thinner than any cell.
     Too much can stay where strips are measured on what stands for a skin, and where a strip is narrower between the

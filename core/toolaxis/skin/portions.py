@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.clipping import clip_half_plane
 from toolaxis.numeric.polygon_boolean import cut_spikes
-from toolaxis.numeric.polygons import signed_area, stations, walk
+from toolaxis.numeric.polygons import polygon_area, signed_area, stations, walk
 from toolaxis.skin.covered_parts import Loops
 from toolaxis.skin.seen_face import SeenFace
 
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 _PORTIONS = 2
 #: Pieces of the longest side of a loop that is carried over to a face's own parameters.
 _DIVIDED = 128
+#: By how much the area of a loop may change as it is carried over, as a share of it, and of its portion.
+_CHANGE, _CHANGE_OF_ALL = 2e-3, 1e-6
 #: Where going once around moves a point by less than this share of the face's diagonal, it lies at a pole.
 _POLE = 1e-6
 
@@ -68,7 +70,8 @@ def _halves(low: float, high: float, closed: bool) -> list[tuple[float, float]]:
 
 
 def carry_into_parameters(portion: Portion, loop: Array) -> Array | None:
-    """A loop of the plane within a portion in the face's own parameters; None where it holds no area there.
+    """A loop of the plane within a portion in the face's own parameters; None where it holds no area there, or another
+    one: less than the whole must never be judged by mistake.
 
     Parameters
     ----------
@@ -84,7 +87,12 @@ def carry_into_parameters(portion: Portion, loop: Array) -> Array | None:
     uv[:, closed] += turns * periods[closed]
     uv = np.clip(uv, portion.ends[:, 0], portion.ends[:, 1])
     uv = _spread_poles(portion, uv)
-    return uv if len(uv) > 2 and signed_area(uv) != 0 else None
+    if len(uv) < 3 or signed_area(uv) == 0:
+        return None
+    seen = portion.seen
+    area = abs(signed_area(loop))
+    change = abs(abs(signed_area(seen.project(seen.face.evaluate(uv).point))) - area)
+    return None if change > _CHANGE * area + _CHANGE_OF_ALL * polygon_area(portion.outline) else uv
 
 
 def _spread_poles(portion: Portion, uv: Array) -> Array:
@@ -100,6 +108,7 @@ def _spread_poles(portion: Portion, uv: Array) -> Array:
 
 
 def _doubled(uv: Array, pole: NDArray[np.bool_], axis: int) -> Array:
+    """A loop with two corners for each one at a pole, which differ in the parameter that has no meaning there."""
     other = np.flatnonzero(~pole)
     rows = []
     for k, point in enumerate(uv):

@@ -283,7 +283,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
 
 
 def _tell(progress: Progress, stage: str) -> None:
-    """Report a step before the first face; whoever stops then gets a plan without operations from the next one."""
+    """Report a step before the first face.  A stop is not answered here: planning answers it, with an empty plan."""
     with suppress(Cancelled):
         progress.report(stage, 0, 0)
 
