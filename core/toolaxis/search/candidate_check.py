@@ -33,9 +33,11 @@ Array = NDArray[np.float64]
 _LEFT_OUT = 3
 #: Share of a face up to which places that no further pass cuts go to the clean-up tool that has to come anyway.
 _MAY_LEAVE = 0.01
-#: Places on a face that tell how much stays high between passes; of how many places of its range they are taken at
-#: most, and how many of these at once.
-_SAMPLES, _MOST_SCATTERED, _AT_ONCE = 40_000, 3_000_000, 60_000
+#: Places on a face that tell how much stays high between passes, and the first of them, which do where none of these is
+#: too high: of what may stay too high they would hold four, of what the judge refuses eight.
+_SAMPLES, _FIRST = 40_000, 8_000
+#: Of how many places of its range they are taken at most, and how many of these at once.
+_MOST_SCATTERED, _AT_ONCE = 3_000_000, 60_000
 #: Steps of the sequence of these: 1 / p and 1 / p^2, where p^3 = p + 1, leave the least gaps.
 _SCATTERED = np.array([0.7548776662466927, 0.5698402909980532])
 #: How much higher than the limit is told there, as a share of the scallop height.
@@ -113,12 +115,13 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
             return check_candidate(replace(job, laid_for=closer), one)
         proof = PathCheck(Violation(CUTTER, 0.0, words=stays_high(made.zones, job.worth.face)))
     unreached = min((made.left - made.undercut) / area, 1.0)
+    ideal = job.worth.ideal_length(one.axis) if proof.witness is None else 0.0
     length = path.length(Motion.CUT)
     width = area * (1 - unreached) / length if length > 0 else 0.0
     words = left_reasons(made.zones, job.worth.face)
     found = Orientation(one.axis, feed, path.passes, one.passes, length, width, proof.gouge, proof.clearance,
                         "feasible", words, unreached=unreached, pattern=pattern_name(made.placed.chart),
-                        ideal=job.worth.ideal_length(one.axis), zones=made.zones)
+                        ideal=ideal, zones=made.zones)
     return CheckedCandidate(one, found, proof, path, made.longer, job.laid_for)
 
 
@@ -166,10 +169,14 @@ def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zon
         uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
     if not len(uv):
         return None
+    limit = FACTOR * worth.scallop
+    excess = Excess(worth.face, worth.tool, made.path, worth.allowance + limit)
+    above = excess(uv[:_FIRST], _TOLD * worth.scallop)
+    if not (above > 0).any():
+        return None
+    above = np.concatenate([above, excess(uv[_FIRST:], _TOLD * worth.scallop)])
     d = worth.face.evaluate(uv)
     area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-    limit = FACTOR * worth.scallop
-    above = Excess(worth.face, worth.tool, made.path, worth.allowance + limit)(uv, _TOLD * worth.scallop)
     order = np.argsort(-above, kind="stable")
     may = int(np.searchsorted(np.cumsum(area[order]), OVERLOOKED * area.sum(), side="right"))
     highest = float(above[order[may]]) if may < len(order) else 0.0

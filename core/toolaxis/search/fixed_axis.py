@@ -23,6 +23,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.feed_choice import check_other_feed
 from toolaxis.search.few_in_the_way import find_few_in_the_way, list_axes_to_try
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
@@ -84,8 +85,6 @@ _ATTEMPTS = 4
 _SEARCHED, _ORDERED = 0.5, 0.4
 #: How often a face for which there is no axis is tried again without few places that are in the way.
 _LEAVINGS = 2
-#: Where further passes make the cut so many times as long, the other feed is tried too.
-_LONGER = 1.02
 
 
 def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | None = None, obstacles: Obstacles = None,
@@ -311,7 +310,7 @@ def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis
         others: tuple[Orientation, ...] = ()
         with suppress(OutOfWork):  # only other feeds and lobes are left to be looked at
             if method.any_feed:
-                best = _other_feed(job, ledger, best) or best
+                best = check_other_feed(job, ledger, best) or best
             others = tuple(_other(job, other) for other in found[k + 1:] if _sound(job, other))
         own: tuple[str, ...] = ()
         if method.describe is not None and best.path is not None:
@@ -330,19 +329,6 @@ def _first_accepted(job: FaceProblem, ledger: AxisTable, found: list[CountedAxis
 
 def _sound(job: FaceProblem, one: CountedAxis) -> bool:
     return job.feasibility.witness(one.axis) is None
-
-
-def _other_feed(job: FaceProblem, ledger: AxisTable, done: CheckedCandidate) -> CheckedCandidate | None:
-    """The same axis with the other feed, where that takes less after further passes; None where it does not."""
-    one, feed = done.one, 1 - done.one.feed
-    if done.longer <= _LONGER or job.worth.feed is not None:
-        return None
-    other = CountedAxis(one.axis, feed, *ledger.count(one.axis, feed, one.unreached), one.unreached)
-    worthwhile = job.worth.index_length if job.worth.objective == "length" else 0.0
-    if not done.value - other.value > worthwhile:
-        return None
-    again = check_candidate(replace(job, laid_for=done.laid_for), other)
-    return again if again.proof.witness is None and again.value < done.value else None
 
 
 def _accept_candidate(job: FaceProblem, ledger: AxisTable, one: CountedAxis, refused: list[Refusal],

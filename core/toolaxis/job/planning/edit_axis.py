@@ -21,6 +21,7 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem, task
+from toolaxis.search.feed_choice import check_other_feed
 from toolaxis.search.local_search import count_row
 from toolaxis.search.machine_limits import intersect_limits, limit_axes, nearest_held_axis
 from toolaxis.search.messages import sentence
@@ -156,10 +157,13 @@ def evaluate_given_axis(task: FaceProblem, axis: ArrayLike, feed: str | None = N
 
 def _prove_feeds(task: FaceProblem, ledger: AxisTable, feed: str | None) -> CheckedCandidate:
     """The passes of the only axis of a ledger with the feed that is given, or that turns out to be the better one."""
-    feeds = range(len(FEEDS)) if feed is None else [FEEDS.index(feed)]
-    checked = [check_candidate(task, count_row(ledger, 0, k)) for k in feeds]
-    proven = [one for one in checked if one.proof.witness is None]
-    return min(proven or checked, key=lambda one: one.value)
+    if feed is not None:
+        return check_candidate(task, count_row(ledger, 0, FEEDS.index(feed)))
+    done = check_candidate(task, count_row(ledger, 0))
+    if done.proof.witness is None:
+        return check_other_feed(task, ledger, done) or done
+    other = check_candidate(task, count_row(ledger, 0, 1 - done.one.feed))
+    return other if other.proof.witness is None else done
 
 
 def with_operations(plan: Plan, chosen: Mapping[int, Operation]) -> Plan:
