@@ -17,6 +17,13 @@ from toolaxis.job.planning.planner import PlanningJob, with_fault
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target, smooth_pieces
 from toolaxis.job.planning.unreachable import prove_unreachable, scene_of
+from toolaxis.job.planning.waiting import (
+    WaitingSurface,
+    find_origin,
+    is_in_pieces,
+    merge_waiting,
+    wait_alone,
+)
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
@@ -33,9 +40,6 @@ Array = NDArray[np.float64]
 
 #: Area below which what a tool leaves is not worth another one, mm^2.
 LEAST_AREA = 0.01
-#: Share of what a tool reaches of a face under any axis that it must reach under one to be asked for the whole face,
-#: and share of the face.
-WHOLE, MUCH = 0.8, 0.3
 #: Share of a skin's area below which what is machined of it makes its faces be planned one by one.
 APART_BELOW = 0.5
 #: Share of a skin that tools have to reach beyond what is machined of it for its faces to be planned one by one.
@@ -46,40 +50,6 @@ PROVEN = 0.99
 _KNOWN = 5
 #: Cutting time above which it is told before it is planned, s.
 _VERY_LONG = 8 * 3600.0
-
-
-@dataclass(frozen=True, eq=False)
-class _Waiting:
-    """What waits for a tool.
-
-    root : Face
-        The sub-surface that was asked for.
-    loops : tuple of (m, 2) arrays
-        In (u, v) of it, what earlier tools left; empty for the whole of it.
-    tool : int
-        Number of the tool.
-    left_by : frozenset of int
-        Places in the list of operations of those that left it.
-    in_pieces : bool
-        Whether the tool reaches too little of it under one axis to be asked for all of it.
-    axis : (3,) array or None
-        The axis under which the choice of tools reckoned with it.
-    copies : tuple of AlikeFace
-        Faces that are alike the root, on which the same was done so far.
-    """
-
-    root: Face
-    loops: tuple[Array, ...]
-    tool: int
-    left_by: frozenset[int] = frozenset()
-    in_pieces: bool = False
-    axis: Array | None = None
-    copies: tuple[AlikeFace, ...] = ()
-
-    @property
-    def area(self) -> float:
-        """Area of what waits, mm^2, without copies."""
-        return self.root.trimmed(self.loops).area if self.loops else self.root.area
 
 
 @dataclass(eq=False)
@@ -100,7 +70,7 @@ class RackPlanner:
     _left_by: dict[int, frozenset[int]] = field(default_factory=dict)
     #: By the place of an operation, and the label of a face that is alike, the place of the copy there.
     _copied: dict[tuple[int, str], int] = field(default_factory=dict)
-    _waiting: list[_Waiting] = field(default_factory=list)
+    _waiting: list[WaitingSurface] = field(default_factory=list)
     _rests: list[UnplannedArea] = field(default_factory=list)
     _used: set[int] = field(default_factory=set)
     #: What failed that is of no single sub-surface.
@@ -178,7 +148,7 @@ class RackPlanner:
         without: list[Face] = []
         for face, chain in zip(faces, chains, strict=True):
             if chain.tools:
-                self._waiting.append(_Waiting(face, (), chain.tools[0], in_pieces=_in_pieces(chain),
+                self._waiting.append(WaitingSurface(face, (), chain.tools[0], in_pieces=is_in_pieces(chain),
                                               axis=self._screen.first_axis(chain), copies=copies[face]))
             else:  # each of those that are alike stands among other surroundings
                 without += [face, *(alike.face for alike in copies[face])]
@@ -197,7 +167,7 @@ class RackPlanner:
             if proven >= PROVEN * face.area:
                 self._done.append(_refuse(face, self.jobs[-1].tool, proven))
             else:  # the screening sees no way, and the smallest tool tells why
-                self._waiting.append(_Waiting(face, (), max(self._allowed)))
+                self._waiting.append(WaitingSurface(face, (), max(self._allowed)))
 
     def _find_alike(self, faces: Sequence[Face]) -> dict[int, AlikeFace]:
         """Those of the faces that are alike others with the same allowance, by their places.
@@ -243,13 +213,13 @@ class RackPlanner:
 
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan what waits for a tool; False where the user stopped it."""
-        now = {self._name(one): one for one in _merge([one for one in self._waiting if one.tool == tool])}
+        now = {self._name(one): one for one in merge_waiting([one for one in self._waiting if one.tool == tool])}
         self._waiting = [one for one in self._waiting if one.tool != tool]
         targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
         made = self.jobs[tool].plan_pieces(targets, self._screen.scene, progress)
         self._faults += made.faults
-        origins = [_origin(op.face, now) for op in made.operations]
+        origins = [find_origin(op.face, now) for op in made.operations]
         rests = [self._rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
         following = None if made.outcome == "cancelled" else self._chains_for(rests, tool, progress)
         copied = None if following is None else self._copy(made.operations, origins, tool, progress)
@@ -264,7 +234,7 @@ class RackPlanner:
             self._count_unfinished(now, made.operations)
         return False
 
-    def _target_of(self, one: _Waiting, label: str) -> Target | None:
+    def _target_of(self, one: WaitingSurface, label: str) -> Target | None:
         """The sub-surface of what waits; None where the program fails to make it, and the plan tells that it did.
 
         What other operations left stays open then, as is told of these.
@@ -278,25 +248,25 @@ class RackPlanner:
             self._faults.append(fault(reason))
             return None
 
-    def _keep_last(self, op: Operation, origin: _Waiting, tool: int) -> None:
+    def _keep_last(self, op: Operation, origin: WaitingSurface, tool: int) -> None:
         """Keep an operation when the user has stopped the plan: no smaller tool is asked for what it leaves."""
         self._keep(op, origin.left_by)
         area = sum(zone.area for zone in op.zones if zone.at_wall)
         if op.done and area >= LEAST_AREA and tool < max(self._allowed):
             self._rests.append(_rest_not_begun(origin.root, area))
 
-    def _count_unfinished(self, now: Mapping[str, _Waiting], finished: Sequence[Operation]) -> None:
+    def _count_unfinished(self, now: Mapping[str, WaitingSurface], finished: Sequence[Operation]) -> None:
         """Tell how much of rests a tool was not done with when the user stopped it."""
         for one in now.values():
             if not one.left_by:  # that is seen from the faces themselves
                 continue
-            done = sum(op.face.area for op in finished if _origin(op.face, now) is one)
+            done = sum(op.face.area for op in finished if find_origin(op.face, now) is one)
             left = one.area - done
             if left >= LEAST_AREA:
                 self._rests.append(_rest_not_begun(one.root, left))
             self._rests += [_rest_not_begun(alike.face, one.area) for alike in one.copies]
 
-    def _axes_of(self, one: _Waiting) -> tuple[Array, ...]:
+    def _axes_of(self, one: WaitingSurface) -> tuple[Array, ...]:
         """Axes of earlier operations on the same face, those first that left what waits, and not too many; then that of
         the choice of tools."""
         left_it = [self._done[place] for place in sorted(one.left_by)]
@@ -310,7 +280,7 @@ class RackPlanner:
             found.append(one.axis)
         return tuple(found)
 
-    def _name(self, one: _Waiting) -> str:
+    def _name(self, one: WaitingSurface) -> str:
         """What a sub-surface is called in reports: 7, and what is left of it 7.2, then 7.3."""
         self._steps[one.root.label] += 1
         step = self._steps[one.root.label]
@@ -337,7 +307,7 @@ class RackPlanner:
         self._screen.keep({rest: one for rest, one in seen if rest is not None and one is not None})
         return [() if one is None else one.chains for _, one in seen]
 
-    def _copy(self, operations: Sequence[Operation], origins: Sequence[_Waiting], tool: int,
+    def _copy(self, operations: Sequence[Operation], origins: Sequence[WaitingSurface], tool: int,
               progress: Progress) -> list[dict[str, Operation]] | None:
         """What became of each operation on the faces that are alike, by their labels; None where the user stopped it.
 
@@ -358,7 +328,7 @@ class RackPlanner:
                 one.update({alike.face.label: refuse_copy(op, piece) for alike, piece in there if piece is not None})
         return found
 
-    def _rest_of(self, op: Operation, origin: _Waiting) -> Face | None:
+    def _rest_of(self, op: Operation, origin: WaitingSurface) -> Face | None:
         """What an operation leaves for smaller tools; None where that is nothing, or the program fails to make it."""
         if op.failed:
             return None
@@ -369,7 +339,7 @@ class RackPlanner:
             self._faults.append(fault(reason))
             return None
 
-    def _take_over(self, op: Operation, origin: _Waiting, following: ToolChain | None, rest: Face | None,
+    def _take_over(self, op: Operation, origin: WaitingSurface, following: ToolChain | None, rest: Face | None,
                    copies: Mapping[str, Operation]) -> None:
         """Keep an operation and its copies, and send what it leaves to the next tool."""
         kept = op.done or following is None
@@ -378,14 +348,14 @@ class RackPlanner:
         for alike in origin.copies:
             left_by = frozenset(self._copied[one, alike.face.label] for one in origin.left_by)
             if alike not in still:
-                self._waiting += _wait_alone(op, origin, alike, left_by)
+                self._waiting += wait_alone(op, origin, alike, left_by)
             elif kept:
                 self._copied[place, alike.face.label] = self._keep(copies[alike.face.label], left_by)
             self._steps[alike.face.label] = max(self._steps[alike.face.label], self._steps[origin.root.label])
         if rest is not None and following is not None:
             left_by = origin.left_by | {place} if op.done else origin.left_by
-            self._waiting.append(_Waiting(origin.root, rest.outline, following.tools[0], left_by,
-                                          _in_pieces(following), self._screen.first_axis(following), still))
+            self._waiting.append(WaitingSurface(origin.root, rest.outline, following.tools[0], left_by,
+                                          is_in_pieces(following), self._screen.first_axis(following), still))
 
     def _keep(self, op: Operation, left_by: frozenset[int]) -> int:
         """Keep an operation; its place."""
@@ -498,21 +468,9 @@ def _rest_not_begun(face: Face, area: float) -> UnplannedArea:
     return UnplannedArea(face.number, face.label, area, False, REST)
 
 
-def _rests_not_begun(one: _Waiting, area: float) -> list[UnplannedArea]:
+def _rests_not_begun(one: WaitingSurface, area: float) -> list[UnplannedArea]:
     """The same of a sub-surface and those of the faces that are alike."""
     return [_rest_not_begun(face, area) for face in (one.root, *(alike.face for alike in one.copies))]
-
-
-def _wait_alone(op: Operation, origin: _Waiting, alike: AlikeFace, left_by: frozenset[int]) -> list[_Waiting]:
-    """What waits on a face where an operation that is done on its like is refused, or may have an axis of its own;
-    empty where its loops enclose nothing there."""
-    whole = op.face.label == origin.root.label
-    loops = () if whole else alike.carry_loops(op.face.outline)
-    if not whole and not loops:
-        return []
-    axis = origin.axis if op.orientation.axis is None else op.orientation.axis
-    moved = None if axis is None else alike.matrix[:3, :3] @ axis
-    return [_Waiting(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, moved)]
 
 
 def _refuse(face: Face, tool: Tool, proven: float) -> Operation:
@@ -521,31 +479,3 @@ def _refuse(face: Face, tool: Tool, proven: float) -> Operation:
     why = f"infeasible: no tool of the rack reaches it with any axis, proven for {share:.1f} % of its area"
     none = Orientation(None, outcome="infeasible", reasons=(why,))
     return Operation(1, face, tool, none, unreachable=proven)
-
-
-def _in_pieces(chain: ToolChain) -> bool:
-    """Whether the first tool of a chain reaches too little of a face under one axis to be asked for all of it."""
-    return chain.first < WHOLE or chain.share < MUCH
-
-
-def _merge(some: Sequence[_Waiting]) -> list[_Waiting]:
-    """What waits for a tool, that of one sub-surface together; rests apart from what no tool has machined yet.
-
-    Areas tell by that what is counted already.
-    """
-    found: dict[tuple[int, bool, tuple[str, ...]], _Waiting] = {}
-    for one in some:
-        key = id(one.root), bool(one.left_by), tuple(alike.face.label for alike in one.copies)
-        before = found.get(key)
-        found[key] = one if before is None else replace(
-            one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
-            in_pieces=before.in_pieces or one.in_pieces)
-    return list(found.values())
-
-
-def _origin(face: Face, named: Mapping[str, _Waiting]) -> _Waiting:
-    """Of which sub-surface that waited a face is one, or a piece: pieces have letters behind its name."""
-    label = face.label
-    while label not in named:
-        label = label[:-1]
-    return named[label]
