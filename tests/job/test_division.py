@@ -9,7 +9,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.job.files.plan_folder import read_plan, write_plan
-from toolaxis.job.planning import planner
+from toolaxis.job.planning import asked_division
 from toolaxis.job.planning.sub_surfaces import LOCKED, REFUSED_HINT, REFUSED_LOCK, read_division
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.sub_surface import division_document, division_from
@@ -146,7 +146,7 @@ def test_one_sub_surface_is_the_face_and_nothing_is_reckoned_for_it(monkeypatch:
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("no division is asked for")
 
-    monkeypatch.setattr(planner, "regions_of", refuse)
+    monkeypatch.setattr(asked_division, "regions_of", refuse)
     whole, one = (ta.plan(wavy(), "ball:6", SCALLOP, method="normal", workers=1, **more)  # type: ignore[arg-type]
                   for more in ({}, {"regions": 1}))
     assert one.outcome == "complete" and [op.face.label for op in one.operations] == ["1"]

@@ -15,9 +15,8 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.files.plan_folder import PLAN, read_plan, stage_folder, write_plan
 from toolaxis.job.output import verify as judge
 from toolaxis.job.output.verify import verdict_document
+from toolaxis.job.planning import asked_division, timing
 from toolaxis.job.planning import clean_up_zones as zones
-from toolaxis.job.planning import planner as planning
-from toolaxis.job.planning import timing
 from toolaxis.job.planning.parallel import check_workers
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.part import Part
@@ -239,7 +238,7 @@ def test_the_judge_s_own_fault_is_told_of_the_operation_that_it_was_about(faultl
 def test_a_face_that_cannot_be_divided_so_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = np.meshgrid(np.linspace(0, 3, 4), np.linspace(0, 3, 4), indexing="ij")
     small = ta.Face.from_bspline(np.stack([x + 40, y, np.zeros_like(x)], axis=-1))
-    monkeypatch.setattr(planning, "mean_width", lambda face: 100.0)  # else narrow faces are asked for no number
+    monkeypatch.setattr(asked_division, "mean_width", lambda face: 100.0)  # else narrow faces are asked for no number
     made = ta.plan(Part.from_faces([*sheets(1).faces, small]), TOOL, SCALLOP, faces=[1, 2], regions=2, limits=LIMITS,
                    workers=1)
     assert [op.face.label for op in made.operations] == ["1a", "1b", "2"]

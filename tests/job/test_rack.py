@@ -19,9 +19,10 @@ from toolaxis.job.output.verify import verdict_document
 from toolaxis.job.planning import pipeline, planner
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.job.planning.rack import RackPlanner, _merge, _Waiting
+from toolaxis.job.planning.rack import RackPlanner
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target
+from toolaxis.job.planning.waiting import WaitingSurface, merge_waiting
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.partition import regions
 from toolaxis.plan.open_places import list_open_places, what_closes
@@ -122,9 +123,9 @@ def test_a_hollow_that_no_tool_fits_asks_for_a_smaller_ball() -> None:
 def test_rests_wait_apart_from_what_no_tool_has_machined() -> None:
     """Found: a piece that no axis reached counted as the rest of its neighbour, and was missing in the part's area."""
     root, loop = walled().faces[0], np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5]])
-    some = [_Waiting(root, (loop,), 1), _Waiting(root, (loop + 0.1,), 1, frozenset({0})),
-            _Waiting(root, (loop + 0.2,), 1), _Waiting(root, (loop + 0.3,), 1, frozenset({2}))]
-    plain, rest = _merge(some)
+    some = [WaitingSurface(root, (loop,), 1), WaitingSurface(root, (loop + 0.1,), 1, frozenset({0})),
+            WaitingSurface(root, (loop + 0.2,), 1), WaitingSurface(root, (loop + 0.3,), 1, frozenset({2}))]
+    plain, rest = merge_waiting(some)
     assert not plain.left_by and len(plain.loops) == 2
     assert rest.left_by == {0, 2} and len(rest.loops) == 2
 
@@ -582,7 +583,7 @@ def test_what_waits_for_its_division_is_not_made_smaller_as_if_it_were_refused(m
     shrink = planner.shrink_refused
     monkeypatch.setattr(planner, "shrink_refused",
                         lambda targets, made, *more: (tried.extend(made), shrink(targets, made, *more))[1])
-    monkeypatch.setattr(rack_planning, "_in_pieces", lambda chain: True)
+    monkeypatch.setattr(rack_planning, "is_in_pieces", lambda chain: True)
     made = planned_bent()
     assert made.outcome == "complete" and all(op.done for op in tried)
     assert sum(areas(made).values()) == pytest.approx(bent().face(1).area, rel=1e-5)

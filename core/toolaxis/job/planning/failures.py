@@ -1,11 +1,11 @@
-"""A face on which the program itself failed: its operation, and the text that tells others what happened."""
+"""A face that cannot be done, or on which the program itself failed: its operation, and what tells others of it."""
 
 import platform
 from collections.abc import Sequence
 from dataclasses import asdict
 
 from toolaxis import __version__
-from toolaxis.errors import REPORT_AT, Fault
+from toolaxis.errors import REPORT_AT, Fault, ToolAxisError
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
@@ -27,6 +27,19 @@ def fail_face(number: int, face: Face, tool: Tool, fault: Fault, notes: tuple[st
     """
     none = Orientation(None, outcome="failed", reasons=(fault.sentence, *notes))
     return Operation(number, face, tool, none, traceback=fault.traceback)
+
+
+def refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:
+    """The operation of a face that cannot be done, in the words of an exception.
+
+    Parameters
+    ----------
+    number : int
+    face : Face
+    tool : Tool
+    reason : ToolAxisError
+    """
+    return Operation(number, face, tool, Orientation(None, reasons=(f"no axis found: {reason}",)))
 
 
 def fail_operation(op: Operation, fault: Fault) -> Operation:

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
-from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault, piece_of
+from toolaxis.errors import Cancelled, Fault, ToolAxisError, about, fault
+from toolaxis.job.planning.asked_division import AskedDivision, end_failed
 from toolaxis.job.planning.blade_clearances import with_rooms
 from toolaxis.job.planning.blade_copies import append_operations, spread_out, with_refused
 from toolaxis.job.planning.blade_pattern import Pattern, group_blade_faces
@@ -18,14 +18,12 @@ from toolaxis.job.planning.comparison import compare_methods
 from toolaxis.job.planning.edit_axis import evaluate_given_axis, frame_of
 from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_better, loses_area, name_faces
 from toolaxis.job.planning.face_copies import carry_piece, copy_operation
-from toolaxis.job.planning.failures import fail_face, fail_operation
+from toolaxis.job.planning.failures import fail_face, fail_operation, refuse_face
 from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.sub_surfaces import (
     Target,
-    by_axis,
     by_reach,
-    lost_face,
     made_of,
     plan_locked,
     shrink_refused,
@@ -36,11 +34,7 @@ from toolaxis.job.planning.sub_surfaces import (
 from toolaxis.job.planning.timing import add_times, feeds_of
 from toolaxis.machine.limits import AxisLimits
 from toolaxis.machine.setup import Mounting
-from toolaxis.partition.bosses import distances
-from toolaxis.partition.face_division import MOST, Divider, Regions
-from toolaxis.partition.partition import check_count
-from toolaxis.partition.partition import regions as regions_of
-from toolaxis.partition.shared_axes import divide_with_shared_axes, trade
+from toolaxis.partition.face_division import Regions
 from toolaxis.plan.choices import DIVIDED, FEEDS, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
@@ -57,7 +51,6 @@ from toolaxis.search.infeasibility import tight_fillet
 from toolaxis.search.machine_limits import intersect_limits, limit_axes
 from toolaxis.search.shared_axis import together
 from toolaxis.shape.face import Face
-from toolaxis.shape.measure import mean_width
 from toolaxis.shape.part import Part
 from toolaxis.skin.alike import AlikeFace
 from toolaxis.skin.join import take_apart
@@ -348,11 +341,7 @@ class PlanningJob:
         pieces = smooth_pieces((face for face in faces if face.number not in given), self.tool)
         faces = [target.face for target in pieces if target.ended is None]
         try:
-            targets: list[Target] = []
-            if self.orientations and faces:
-                targets, options = self._sharing(faces, progress)
-            elif faces:
-                targets = self._divided(faces, progress)
+            targets, options = self._division.divide(faces, progress)
             targets += [target for target in pieces if target.ended is not None]
             targets += smooth_pieces((face for face in self.whole if face.number not in given), self.tool)
             targets = with_given(targets, given, [] if self.orientations else order)
@@ -462,6 +451,11 @@ class PlanningJob:
             return None
         return divide_by_reach(self.task(face, progress), scene, progress.within(f"face {face.label}"))
 
+    @property
+    def _division(self) -> AskedDivision:
+        return AskedDivision(self.part, self.obstacles, self.tool, self.task, self.regions, self.orientations,
+                            self.workers)
+
     def _alike(self, targets: list[Target], progress: Progress) -> Plan:
         """The plan with one axis for all sub-surfaces: the best one that the proof of all their passes accepts."""
         axes, targets = self._for_all(targets, progress)
@@ -486,7 +480,7 @@ class PlanningJob:
             except ToolAxisError:  # Cancelled among them
                 raise
             except Exception as reason:
-                targets = _without(targets, self.tool, reason)
+                targets = end_failed(targets, self.tool, reason)
         return np.empty((0, 3)), targets
 
     def empty(self) -> Plan:
@@ -496,86 +490,6 @@ class PlanningJob:
     def _plan(self, operations: tuple[Operation, ...], outcome: str, options: tuple[Option, ...]) -> Plan:
         return Plan(self.part, (self.tool,), self.inputs, operations, self.bodies, self.datum, outcome, options,
                     machine=self.machine, at_points=self._strategy.at_points)
-
-    def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
-        """Sub-surfaces of each face by itself; a number of them is not asked of faces narrower than the cutter."""
-        if self.regions in (None, 1):  # one is the face itself: what pieces of it would cost need not be reckoned
-            return [Target(face) for face in faces]
-
-        def _division(k: int, inner: Progress) -> Regions | ToolAxisError:
-            named = inner.within(f"face {faces[k].label}")
-            standing = distances(faces[k], self.tool, self.part, self.obstacles)
-            count = "auto" if mean_width(faces[k]) < 2 * self.tool.radius else self.regions
-            try:
-                return regions_of(self.task(faces[k], inner), count, progress=named, bosses=standing)
-            except Cancelled:
-                raise
-            except ToolAxisError as reason:
-                return reason
-
-        found = abreast(_division, len(faces), self.workers, progress)
-        if found.cancelled:
-            raise Cancelled("cancelled by the user")
-        refused = [one for one in found.results.values() if isinstance(one, ToolAxisError)]
-        if len(refused) == len(faces):
-            raise refused[0]
-        targets: list[Target] = []
-        for k, face in enumerate(faces):
-            one = found.results.get(k)
-            if one is None:
-                targets.append(lost_face(face, self.tool, found.faults[k]))
-            elif isinstance(one, ToolAxisError):  # this face cannot be divided so; the others can
-                targets.append(Target(face, ended=_refuse_face(1, face, self.tool, one)))
-            else:
-                targets += [Target(piece, axis) for piece, axis in zip_longest(one.faces, one.axes)]
-        return targets
-
-    def _sharing(self, faces: Sequence[Face], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
-        """Sub-surfaces of all faces with the few axes that they share, and the numbers of axes to choose from.
-
-        A face for which no division was found stays whole with an axis of its own, unless that is so of all.
-        """
-        most = MOST if self.regions is None else check_count(self.regions) or MOST
-        every: list[Divider] = []
-        ended: list[Target] = []
-        for face in faces:
-            try:
-                one = Divider(self.task(face, progress), most=most, progress=progress.within(f"face {face.label}"))
-                _ = one.best
-                every.append(one)
-            except ToolAxisError:  # Cancelled among them
-                raise
-            except Exception as reason:
-                ended.append(lost_face(face, self.tool, fault(reason)))
-        dividers = [one for one in every if len(one.best.known)] or every
-        ended += [Target(one.job.worth.face) for one in every if one not in dividers]
-        while dividers:
-            try:
-                targets, options = self._in_common(dividers, progress)
-                return targets + ended, options
-            except ToolAxisError:
-                raise
-            except Exception as reason:
-                left = _without([Target(one.job.worth.face) for one in dividers], self.tool, reason)
-                ended += [target for target in left if target.ended is not None]
-                dividers = [one for one, target in zip(dividers, left, strict=True) if target.ended is None]
-        return ended, ()
-
-    def _in_common(self, dividers: list[Divider], progress: Progress) -> tuple[list[Target], tuple[Option, ...]]:
-        """Sub-surfaces of faces with the few axes that they share, and the numbers of axes to choose from."""
-        options: tuple[Option, ...] = ()
-        count = check_count(self.orientations, "orientations")
-        if count is None:
-            found, knee = trade(dividers, progress=progress)
-            options = tuple(Option(one.orientations, one.pieces, one.length, k == knee, one.seconds)
-                            for k, one in enumerate(found))
-            chosen = found[knee]
-        else:
-            chosen = divide_with_shared_axes(dividers, count, progress=progress)
-        axes = np.unique(np.concatenate([one.axes for one in chosen.regions]), axis=0)
-        rows = [(piece, axis) for one in chosen.regions for piece, axis in zip(one.faces, one.axes, strict=True)]
-        return by_axis([Target(piece, axis, True, tuple(other for other in axes if (other != axis).any()))
-                        for piece, axis in rows]), options
 
     def _operation(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with no more work than is allowed."""
@@ -624,7 +538,7 @@ class PlanningJob:
             none = Orientation(None, outcome="not_found", reasons=(str(reason),))
             return Operation(number, face, self.tool, none)
         except ToolAxisError as reason:  # this face cannot be done; the others can
-            return _refuse_face(number, face, self.tool, reason)
+            return refuse_face(number, face, self.tool, reason)
         if found.outcome == "cancelled":
             raise Cancelled("cancelled by the user")
         frame = None if path is None else frame_of(face, found, self.datum)
@@ -700,11 +614,6 @@ class PlanningJob:
                            index_length=self._index_length, progress=progress)
 
 
-def _refuse_face(number: int, face: Face, tool: Tool, reason: ToolAxisError) -> Operation:
-    """The operation of a face that cannot be done, in the words of an exception."""
-    return Operation(number, face, tool, Orientation(None, reasons=(f"no axis found: {reason}",)))
-
-
 def _waits(op: Operation) -> bool:
     """Whether a sub-surface is yet to be divided for its time, or planned whole."""
     return _HOURS in op.orientation.reasons
@@ -713,15 +622,6 @@ def _waits(op: Operation) -> bool:
 def _outcome(operations: Sequence[Operation]) -> str:
     """What a plan of some operations came to that nobody stopped."""
     return "complete" if all(op.done for op in operations) else "incomplete"
-
-
-def _without(targets: list[Target], tool: Tool, reason: Exception) -> list[Target]:
-    """Targets, that one ended on which the program failed; all of them where nobody knows which it was."""
-    why, piece = fault(reason), piece_of(reason)
-    guilty = {target.face.label for target in targets if target.face.label == piece} or {
-        target.face.label for target in targets}
-    return [lost_face(target.face, tool, why) if target.ended is None and target.face.label in guilty else target
-            for target in targets]
 
 
 def _price(job: FaceProblem, found: Orientation) -> float:
