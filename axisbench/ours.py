@@ -3,7 +3,7 @@
 fixed-axis: the best axis of the hemisphere, Roman's rule, the mean normal, a ball end of the same radius along it.
 passes: iso-parametric, iso-planar, a field, and iso-scallop passes that are offset from a border.
 orientations: sub-surfaces that share the fewest axes; one axis.  four-plus-one, five-axes: the strategies, and the best
-fixed axis.  whole-part: a rack.
+fixed axis.  whole-part: a rack; its largest tool for all, and its smallest one.
 """
 
 import csv
@@ -37,8 +37,7 @@ Paths = list[tuple[int, ToolPath]]
 #: The methods of each task, ours first: the columns of the tables.
 METHODS = {"fixed-axis": ("ours", "roman", "normal", "ball"), "passes": ("field", "iso", "planes", "offset"),
            "orientations": ("ours", "one"), "four-plus-one": ("ours", "fixed"),
-           "five-axes": ("ours", "two-point", "fixed"), "whole-part": ("ours",)}
-
+           "five-axes": ("ours", "two-point", "fixed"), "whole-part": ("ours", "largest", "smallest")}
 
 #: Passes that are offset from a border, at most: where strips have almost no width they hardly get on.
 MOST_OFFSET = 50
@@ -207,9 +206,9 @@ def _make_moving(problem: BenchmarkProblem, method: str) -> tuple[Paths, float]:
 
 
 def _make_whole_part(problem: BenchmarkProblem, method: str) -> tuple[Paths, float]:
-    faces = "skins" if problem.faces else [face.number for face in problem.asked]
-    made = ta.plan(problem.part, list(problem.tools), problem.scallop, tolerance=problem.tolerance, workers=1,
-                   faces=faces)
+    faces: Sequence[int] | str = problem.faces or "skins"
+    tools = {"ours": problem.tools, "largest": problem.tools[:1], "smallest": problem.tools[-1:]}[method]
+    made = ta.plan(problem.part, list(tools), problem.scallop, tolerance=problem.tolerance, workers=1, faces=faces)
     done = [(op.tool, op.path) for op in made.operations if op.path is not None]
     if not done:
         raise ta.InvalidInput(next((why for op in made.operations for why in op.orientation.reasons), "nothing is cut"))
