@@ -23,7 +23,6 @@ from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem, task
-from toolaxis.search.feed_choice import check_other_feed
 from toolaxis.search.few_in_the_way import find_few_in_the_way, list_axes_to_try
 from toolaxis.search.hemisphere import next_in_lobe, search, so_far
 from toolaxis.search.infeasibility import corner_too_large, spread_too_wide
@@ -45,6 +44,7 @@ from toolaxis.search.messages import (
     tally,
     why_none,
 )
+from toolaxis.search.other_feed import check_other_feed
 from toolaxis.search.rank_by_passes import least_made
 from toolaxis.search.sectors import by_mean_normal, by_roman, sectors
 from toolaxis.shape.face import Face

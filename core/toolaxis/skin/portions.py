@@ -70,8 +70,8 @@ def _halves(low: float, high: float, closed: bool) -> list[tuple[float, float]]:
 
 
 def carry_into_parameters(portion: Portion, loop: Array) -> Array | None:
-    """A loop of the plane within a portion in the face's own parameters; None where it holds no area there, or another
-    one: less than the whole must never be judged by mistake.
+    """A loop of the plane within a portion in the face's own parameters; None where it holds no area there, or
+    where its area changes: the whole face is judged then, so that no part of it goes unjudged.
 
     Parameters
     ----------

@@ -62,9 +62,9 @@ class AskedDivision:
         ------
         Cancelled
         """
-        if self.orientations and faces:
-            return self._sharing(faces, progress)
-        return self._divided(faces, progress) if faces else [], ()
+        if not faces:
+            return [], ()
+        return self._sharing(faces, progress) if self.orientations else (self._divided(faces, progress), ())
 
     def _divided(self, faces: Sequence[Face], progress: Progress) -> list[Target]:
         """Sub-surfaces of each face by itself; a number of them is not asked of faces narrower than the cutter."""

@@ -21,10 +21,10 @@ from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.search.candidate_check import CheckedCandidate, check_candidate
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.search.face_problem import FaceProblem, task
-from toolaxis.search.feed_choice import check_other_feed
 from toolaxis.search.local_search import count_row
 from toolaxis.search.machine_limits import intersect_limits, limit_axes, nearest_held_axis
 from toolaxis.search.messages import sentence
+from toolaxis.search.other_feed import check_other_feed
 from toolaxis.search.sectors import roman_axis
 from toolaxis.shape.face import Face
 

@@ -453,6 +453,7 @@ class PlanningJob:
 
     @property
     def _division(self) -> AskedDivision:
+        """How faces are divided where no axis was looked for yet."""
         return AskedDivision(self.part, self.obstacles, self.tool, self.task, self.regions, self.orientations,
                             self.workers)
 

@@ -149,7 +149,7 @@ class RackPlanner:
         for face, chain in zip(faces, chains, strict=True):
             if chain.tools:
                 self._waiting.append(WaitingSurface(face, (), chain.tools[0], in_pieces=is_in_pieces(chain),
-                                              axis=self._screen.first_axis(chain), copies=copies[face]))
+                                                    axis=self._screen.first_axis(chain), copies=copies[face]))
             else:  # each of those that are alike stands among other surroundings
                 without += [face, *(alike.face for alike in copies[face])]
         scene, asked = scene_of(self.jobs[0]), self.jobs[0].asked_area
@@ -355,7 +355,7 @@ class RackPlanner:
         if rest is not None and following is not None:
             left_by = origin.left_by | {place} if op.done else origin.left_by
             self._waiting.append(WaitingSurface(origin.root, rest.outline, following.tools[0], left_by,
-                                          is_in_pieces(following), self._screen.first_axis(following), still))
+                                                is_in_pieces(following), self._screen.first_axis(following), still))
 
     def _keep(self, op: Operation, left_by: frozenset[int]) -> int:
         """Keep an operation; its place."""
