@@ -22,6 +22,7 @@ from OCP.Geom import Geom_BSplineSurface
 from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
+from OCP.StepBasic import StepBasic_Product
 from OCP.STEPControl import STEPControl_Reader, STEPControl_StepModelType, STEPControl_Writer
 from OCP.TCollection import TCollection_HAsciiString
 
@@ -113,9 +114,9 @@ def write_step(name, shape, folder=None):
     folder = HERE if folder is None else folder
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
-    Interface_Static.SetCVal_s("write.step.product.name", name)
     writer = STEPControl_Writer()
     writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
+    _name_product(writer.Model(), TCollection_HAsciiString(name))
     header = APIHeaderSection_MakeHeader(writer.Model())
     header.SetName(TCollection_HAsciiString(f"{name}.step"))
     header.SetTimeStamp(TCollection_HAsciiString("2016-01-01T00:00:00"))
@@ -123,3 +124,12 @@ def write_step(name, shape, folder=None):
     if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise OSError(f"{name}.step could not be written to {folder}")
     return path
+
+
+def _name_product(model, name):
+    """Name the product of a STEP model: the kernel's own name counts what this process has written before."""
+    for number in range(1, model.NbEntities() + 1):
+        entity = model.Value(number)
+        if isinstance(entity, StepBasic_Product):
+            entity.SetId(name)
+            entity.SetName(name)

@@ -60,6 +60,8 @@ def test_faces_are_made_anew_byte_by_byte(tmp_path: Path) -> None:
 
 def test_parts_are_made_anew_byte_by_byte(tmp_path: Path) -> None:
     pytest.importorskip("cadquery")
+    # Open CASCADE counts the files that a process has written: no name may hold that number.
+    write_parts(tmp_path)
     written = write_parts(tmp_path)
     assert len(written) >= 8
     assert [path.name for path in written if path.read_bytes() != (DATA / "parts" / path.name).read_bytes()] == []
