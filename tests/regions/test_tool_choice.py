@@ -101,7 +101,23 @@ def test_the_axis_of_the_first_tool_is_the_one_under_which_it_reaches_so_much(se
     reached = np.isfinite(given.seconds)
     for chain in chains_of(given, 2.0):
         own = reached[chain.tools[0]]
-        share = own[chain.axis] @ given.area / given.area.sum()
+        share = own[chain.axes[0].axis] @ given.area / given.area.sum()
         assert share == pytest.approx(chain.share)
         assert share >= 0.97 * (own @ given.area).max() / given.area.sum()
-    assert ToolChain((), 0.0, 0.0).axis == -1
+    assert ToolChain((), 0.0, 0.0).axes == ()
+
+
+def test_the_other_axes_of_the_first_tool_reach_as_much_in_nearly_the_same_time() -> None:
+    move, several = 2.0, 0
+    for seed in range(8):
+        given = prices(np.random.default_rng(seed), 3, axes=12, cells=4)
+        reached = np.isfinite(given.seconds)
+        for chain in chains_of(given, move):
+            tool, first = chain.tools[0], chain.axes[0]
+            areas = reached[tool] @ given.area
+            seconds = np.where(reached[tool], given.seconds[tool], 0.0).sum(axis=1)
+            as_good = (areas >= 0.98 * areas.max()) & (seconds <= first.seconds + move)
+            assert {one.axis for one in chain.axes} == set(np.flatnonzero(as_good))
+            assert [one.seconds for one in chain.axes] == sorted(seconds[[one.axis for one in chain.axes]])
+            several += len(chain.axes) > 1
+    assert several > 8

@@ -2,14 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
-from toolaxis.feasibility.surroundings import MARGIN, SKIN
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
 from toolaxis.numeric.polygons import inside, polygon_area, signed_area, slabs
@@ -21,6 +19,7 @@ from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.prices import fits_hollows
 from toolaxis.regions.reach_screen import ReachScreen, seen_cells
 from toolaxis.regions.scene import ReachScene
+from toolaxis.regions.searched_scene import tighten_scene
 from toolaxis.search.direction_grid import ring
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.shape.measure import mean_width
@@ -34,8 +33,6 @@ Loops = tuple[Array, ...]
 #: Size of cells in radii of the cutter and in mean widths of the face at most, how many a face has at most, and how
 #: much finer those are by which the borders go, and how many.
 _SIZE, _ACROSS, _COARSE, _FINER, _FINE = 0.4, 1 / 3, 1000, 2.5, 15000
-#: How much deeper the cutter may gouge than the search allows, mm: the search counts what its bounds may be off, too.
-_SLACK = 0.001
 #: Axes that are screened between two moments to stop.
 _TOGETHER = 32
 #: Axes from which others are looked for, the angle between them, and how many are held against each other each time.
@@ -151,7 +148,7 @@ def divide_by_reach(job: FaceProblem, scene: ReachScene, progress: Progress = NO
     face, tool = job.worth.face, job.worth.tool
     if not face.area > 0:
         return ReachDivision((), tuple(_parts(face.outline)), 0)
-    kept = _as_searched(job, scene)
+    kept = tighten_scene(job, scene)
     width = mean_width(face)
     square = 2 * tool.radius * min(2 * tool.radius, width)
     piece = max(_WORTH * face.area, _SQUARES * square)
@@ -411,16 +408,6 @@ class _Cover:
             if len(near):
                 number = self._next(others, [number, *reach.screen(near)])
                 yield number
-
-
-def _as_searched(job: FaceProblem, scene: ReachScene) -> ReachScene:
-    """A scene with the distances that the search keeps, which are a little larger, and its limits."""
-    own = job.feasibility
-    given, skin = own.tolerance, next((one for one in own.groups if one.role == SKIN), None)
-    gouge = given.gouge if skin is None else own.allowance - float(skin.required[0]) + _SLACK
-    kept = replace(given, gouge=gouge, cutter_clearance=given.cutter_clearance + MARGIN,
-                   shank_clearance=given.shank_clearance + MARGIN, holder_clearance=given.holder_clearance + MARGIN)
-    return replace(scene, tolerance=kept, limits=own.limits, allowance=own.allowance)
 
 
 class _Borders:

@@ -28,6 +28,13 @@ class FacePrices(NamedTuple):
     area: Array
 
 
+class AxisTime(NamedTuple):
+    """An axis of a tool on a face: axis : its number;  seconds : the cutting time under it, s."""
+
+    axis: int
+    seconds: float
+
+
 class ToolChain(NamedTuple):
     """Tools that machine a face one after the other, each what those before it left.
 
@@ -36,7 +43,7 @@ class ToolChain(NamedTuple):
     charge : for what none of them reaches and others would, s
     first : share that the first of them reaches under its axis of what it reaches under any
     share : share of the face that it reaches under that axis
-    axis : number of that axis; -1 without a tool
+    axes : that axis, then others under which it reaches as much and takes less than an index move longer
     """
 
     tools: tuple[int, ...]
@@ -44,7 +51,7 @@ class ToolChain(NamedTuple):
     charge: float
     first: float = 0.0
     share: float = 0.0
-    axis: int = -1
+    axes: tuple[AxisTime, ...] = ()
 
     @property
     def cost(self) -> float:
@@ -68,11 +75,15 @@ class ToolChoice(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """What a tool machines under one axis: (cells,) bool, its time, s, and the number of the axis."""
+    """What a tool machines under one axis: (cells,) bool, and that axis with others that are nearly as quick."""
 
     cells: Bools
-    seconds: float
-    axis: int
+    axes: tuple[AxisTime, ...]
+
+    @property
+    def seconds(self) -> float:
+        """Cutting time, s."""
+        return self.axes[0].seconds
 
 
 def chains_of(prices: FacePrices, index: float, most: int = MOST) -> tuple[ToolChain, ...]:
@@ -128,32 +139,33 @@ def _chains(prices: FacePrices, reached: Bools, charges: _Charges, most: int) ->
     under_any, whole = reached.any(axis=1) @ prices.area, float(prices.area.sum())
 
     def _longer(tools: tuple[int, ...], seconds: float, left: Bools,
-                begun: tuple[float, float, int]) -> Iterator[ToolChain]:
+                begun: tuple[float, float, tuple[AxisTime, ...]]) -> Iterator[ToolChain]:
         for tool in range(tools[-1] if tools else 0, len(prices.seconds)):
-            step = _best_step(prices, reached[tool], tool, left)
+            step = _best_step(prices, reached[tool], tool, left, charges.move)
             if step is None:
                 continue
             chain, rest = (*tools, tool), left & ~step.cells
             spent = seconds + step.seconds + charges.move
             area = float(prices.area[step.cells].sum())
-            own = begun if tools else (area / float(under_any[tool]), area / whole, step.axis)
+            own = begun if tools else (area / float(under_any[tool]), area / whole, step.axes)
             yield ToolChain(chain, spent, charges.of(rest), *own)
             if len(chain) < most and rest.any():
                 yield from _longer(chain, spent, rest, own)
 
     if charges.possible.any():
-        yield from _longer((), 0.0, charges.possible, (0.0, 0.0, -1))
+        yield from _longer((), 0.0, charges.possible, (0.0, 0.0, ()))
 
 
-def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools) -> _Step | None:
+def _best_step(prices: FacePrices, reached: Bools, tool: int, left: Bools, move: float) -> _Step | None:
     """What a tool machines of what is left under its best axis; None where it reaches nothing of it."""
     held = reached & left
     area, seconds = held @ prices.area, np.where(held, prices.seconds[tool], 0.0).sum(axis=1)
     if not area.size or not area.max() > 0:
         return None
     good = np.flatnonzero(area >= (1 - _AS_GOOD) * area.max())
-    best = good[int(np.argmin(seconds[good]))]
-    return _Step(held[best], float(seconds[best]), best)
+    good = good[np.argsort(seconds[good], kind="stable")]
+    near = good[seconds[good] <= seconds[good[0]] + move]
+    return _Step(held[good[0]], tuple(AxisTime(int(one), float(seconds[one])) for one in near))
 
 
 def choose_tools(chains: Sequence[Sequence[ToolChain]], change: float, most: int | None = None) -> ToolChoice:

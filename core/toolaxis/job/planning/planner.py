@@ -21,6 +21,7 @@ from toolaxis.job.planning.face_copies import carry_piece, copy_operation
 from toolaxis.job.planning.failures import fail_face, fail_operation, refuse_face
 from toolaxis.job.planning.held_side import cut_face
 from toolaxis.job.planning.parallel import abreast
+from toolaxis.job.planning.share_axes import share_axes
 from toolaxis.job.planning.sub_surfaces import (
     Target,
     by_reach,
@@ -41,6 +42,7 @@ from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
+from toolaxis.regions.axis_choice import reckon_axes
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
 from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds
 from toolaxis.regions.machined_beside import take_machined_beside
@@ -153,6 +155,8 @@ class PlanningJob:
         work, as there is another tool to be tried.  0 with one tool.
     for_time : bool
         Whether a plan with several tools divides what one axis machines where several axes take less time.
+    known_axes : tuple of (3,) arrays
+        Axes under which the tool machines something else: these cost no index move.
     """
 
     part: Part
@@ -170,6 +174,7 @@ class PlanningJob:
     one_by_one: bool = True
     asked_area: float = 0.0
     for_time: bool = True
+    known_axes: tuple[Array, ...] = ()
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -390,6 +395,10 @@ class PlanningJob:
             return made, True
         divisions = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
         pieces = {k: by_reach(targets[k].face, made[k], one, targets[k].others) for k, one in divisions.items()}
+        if self.asked_area > 0:
+            pieces, stopped = self._share_axes(pieces, [op for op in made if op.done], known, stage)
+            if stopped:
+                return made, True
         done, cancelled = self._operations_of([piece for some in pieces.values() for piece in some], stage)
         if not cancelled:  # what the proof refuses is tried once more, a little smaller
             tried = [op for op in done if not _waits(op)]
@@ -403,6 +412,17 @@ class PlanningJob:
             own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
             rows += self._with_machined_beside(own) or [failed.get(k, op)]
         return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
+
+    def _share_axes(self, pieces: dict[int, list[Target]], done: Sequence[Operation], scene: ReachScene,
+                    progress: Progress) -> tuple[dict[int, list[Target]], bool]:
+        """Sub-surfaces of divided faces, with axes that serve several of them; and whether the user stopped that."""
+        used = [*self.known_axes, *(op.orientation.axis for op in done if op.orientation.axis is not None)]
+        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
+        open_ = [target for some in pieces.values() for target in some if target.ended is None]
+        shared, cancelled = share_axes(open_, used, lambda face, axes, own, inner: reckon_axes(
+            self.task(face, inner), scene, axes, own, rate, INDEX_SECONDS), self.workers, progress)
+        given = dict(zip(map(id, open_), shared, strict=True))
+        return {k: [given.get(id(one), one) for one in some] for k, some in pieces.items()}, cancelled
 
     def _with_machined_beside(self, pieces: Sequence[Operation]) -> list[Operation]:
         """Operations of the pieces of one face, larger by what their passes machine of those without an axis."""

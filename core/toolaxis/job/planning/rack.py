@@ -12,6 +12,7 @@ from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_
 from toolaxis.job.planning.face_copies import refuse_copy
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.held_side import cut_face
+from toolaxis.job.planning.other_tools import FirstRound, takes_less_time, tools_of
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob, with_fault
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
@@ -27,9 +28,10 @@ from toolaxis.job.planning.waiting import (
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
-from toolaxis.plan.plan import CHANGE_SECONDS, LEFT_OPEN, Plan
+from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, LEFT_OPEN, Plan
 from toolaxis.plan.unplanned_area import REST, UnplannedArea
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
+from toolaxis.regions.axis_choice import choose_axes
 from toolaxis.regions.tool_choice import ToolChain, choose_tools
 from toolaxis.shape.face import Face
 from toolaxis.skin.alike import AlikeFace, find_alike_faces
@@ -76,6 +78,8 @@ class RackPlanner:
     #: What failed that is of no single sub-surface.
     _faults: list[Fault] = field(default_factory=list)
     _steps: Counter[str] = field(default_factory=Counter)
+    #: What the choice of tools said of faces.
+    _first_round: FirstRound = field(default_factory=FirstRound)
 
     def plan(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces.
@@ -97,6 +101,7 @@ class RackPlanner:
                 if not self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name)):
                     break
             else:
+                self._try_other_tools(faces, progress.within("other tools"))
                 self._take_skins_apart(faces, progress.within("faces one by one"))
                 return self._put_together("")
         except Cancelled:
@@ -140,6 +145,8 @@ class RackPlanner:
         self._used = set(choice.tools)
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
+        for face, chain, others in zip(screened, chosen, chains, strict=True):
+            self._first_round.add((face, *(one.face for one in copies[face])), chain, others)
         self._wait_or_refuse(screened, chosen, copies, progress)
 
     def _wait_or_refuse(self, faces: Sequence[Face], chains: Sequence[ToolChain],
@@ -149,7 +156,7 @@ class RackPlanner:
         for face, chain in zip(faces, chains, strict=True):
             if chain.tools:
                 self._waiting.append(WaitingSurface(face, (), chain.tools[0], in_pieces=is_in_pieces(chain),
-                                                    axis=self._screen.first_axis(chain), copies=copies[face]))
+                                                    axes=chain.axes, copies=copies[face]))
             else:  # each of those that are alike stands among other surroundings
                 without += [face, *(alike.face for alike in copies[face])]
         scene, asked = scene_of(self.jobs[0]), self.jobs[0].asked_area
@@ -213,11 +220,13 @@ class RackPlanner:
 
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan what waits for a tool; False where the user stopped it."""
-        now = {self._name(one): one for one in merge_waiting([one for one in self._waiting if one.tool == tool])}
+        merged = merge_waiting([one for one in self._waiting if one.tool == tool])
+        now = {self._name(one): one for one in self._share_axes(merged, tool)}
         self._waiting = [one for one in self._waiting if one.tool != tool]
         targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
-        made = self.jobs[tool].plan_pieces(targets, self._screen.scene, progress)
+        job = replace(self.jobs[tool], known_axes=self._axes_under(tool))
+        made = job.plan_pieces(targets, self._screen.scene, progress)
         self._faults += made.faults
         origins = [find_origin(op.face, now) for op in made.operations]
         rests = [self._rest_of(op, origin) for op, origin in zip(made.operations, origins, strict=True)]
@@ -234,6 +243,28 @@ class RackPlanner:
             self._count_unfinished(now, made.operations)
         return False
 
+    def _share_axes(self, some: Sequence[WaitingSurface], tool: int) -> list[WaitingSurface]:
+        """Surfaces that wait for a tool, each with the axis that lets all of them take least time together."""
+        used = self._screen.numbers_of(self._axes_under(tool))
+        reckoned = [one for one in some if one.axes]
+        options = [[time._replace(seconds=time.seconds + INDEX_SECONDS * self._further_axes(one, time.axis))
+                    for time in one.axes] for one in reckoned]
+        chosen = dict(zip(reckoned, choose_axes(options, used, INDEX_SECONDS), strict=True))
+        times = Counter((*chosen.values(), *used))
+        return [replace(one, axis=self._screen.axis(chosen[one]), shared=times[chosen[one]] > 1)
+                if one in chosen else one for one in some]
+
+    def _further_axes(self, one: WaitingSurface, number: int) -> int:
+        """How many more axes there are where an axis is turned with the copies of a surface."""
+        axis = self._screen.axis(number)
+        turned = [axis, *(alike.matrix[:3, :3] @ axis for alike in one.copies)]
+        return len(np.unique(np.round(turned, 6) + 0.0, axis=0)) - 1
+
+    def _axes_under(self, tool: int) -> tuple[Array, ...]:
+        """The axes under which a tool machines something already."""
+        axes = (op.orientation.axis for op in self._done if op.done and op.tool == self.jobs[tool].tool)
+        return tuple(axis for axis in axes if axis is not None)
+
     def _target_of(self, one: WaitingSurface, label: str) -> Target | None:
         """The sub-surface of what waits; None where the program fails to make it, and the plan tells that it did.
 
@@ -241,7 +272,8 @@ class RackPlanner:
         """
         try:
             face = one.root.trimmed(one.loops, label) if one.loops else one.root
-            return Target(face, others=self._axes_of(one), in_pieces=one.in_pieces)
+            first = one.axis if one.shared else None  # before all others: it saves an index move
+            return Target(face, first, others=self._axes_of(one), in_pieces=one.in_pieces)
         except Cancelled:
             raise
         except Exception as reason:
@@ -276,7 +308,7 @@ class RackPlanner:
             if axis is not None and not any(np.array_equal(axis, other) for other in found):
                 found.append(axis)
         found = found[:_KNOWN]
-        if one.axis is not None:
+        if one.axis is not None and not one.shared:
             found.append(one.axis)
         return tuple(found)
 
@@ -355,7 +387,7 @@ class RackPlanner:
         if rest is not None and following is not None:
             left_by = origin.left_by | {place} if op.done else origin.left_by
             self._waiting.append(WaitingSurface(origin.root, rest.outline, following.tools[0], left_by,
-                                                is_in_pieces(following), self._screen.first_axis(following), still))
+                                                is_in_pieces(following), following.axes, copies=still))
 
     def _keep(self, op: Operation, left_by: frozenset[int]) -> int:
         """Keep an operation; its place."""
@@ -371,6 +403,20 @@ class RackPlanner:
         best = min(chains, key=lambda one: one.cost + CHANGE_SECONDS * len(set(one.tools) - self._used))
         self._used |= set(best.tools)
         return best
+
+    def _try_other_tools(self, faces: Sequence[Face], progress: Progress) -> None:
+        """Plan faces once more that other tools may take much less time for, and keep what is better."""
+        inputs = self.jobs[0].inputs
+        for first, numbers in self._first_round.with_other_tools(self._done, inputs, self._allowed).items():
+            other = RackPlanner([self.jobs[k] for k in sorted(self._allowed) if k >= first])
+            again = [face for face in faces if face.number in numbers]
+            if other.plan(again, progress).outcome == "cancelled":
+                raise Cancelled("cancelled by the user")
+            for face in again:
+                own, rows = ([op for op in some if op.face.number == face.number] for some in (self._done, other._done))
+                elsewhere = tools_of(op for op in self._done if op.face.number != face.number)
+                if not any(op.failed for op in rows) and takes_less_time(rows, own, elsewhere, inputs):
+                    self._exchange(face, other, rows)
 
     def _take_skins_apart(self, faces: Sequence[Face], progress: Progress) -> None:
         """Plan the faces of skins of which little is machined one by one, and keep that where it is better."""

@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 
 #: Angle between the axes that are screened, rad, and cells of a face for it, about.
 APART, _CELLS = np.radians(20), 200
+#: Difference in any component up to which two axes are the same.
+_SAME_AXIS = 1e-9
 
 
 class ReachBits(NamedTuple):
@@ -86,8 +88,9 @@ class RackScreening:
         """
         prices, facing = self._prices(face, begin)
         held = np.isfinite(prices.seconds)
-        chains = tuple(one._replace(tools=tuple(tool + begin for tool in one.tools), axis=int(facing[one.axis]))
-                       if one.tools else one for one in chains_of(prices, INDEX_SECONDS))
+        chains = tuple(one._replace(tools=tuple(tool + begin for tool in one.tools),
+                                    axes=tuple(axis._replace(axis=int(facing[axis.axis])) for axis in one.axes))
+                       for one in chains_of(prices, INDEX_SECONDS))
         return ScreenedFace(chains, ReachBits(begin, held.shape, np.packbits(held)))
 
     def keep(self, screened: Mapping[Face, ScreenedFace]) -> None:
@@ -133,14 +136,24 @@ class RackScreening:
         seconds = np.where(held, cells.area / (np.where(held, wide, 1.0) * pace), np.inf)
         return FacePrices(seconds, cells.area), facing
 
-    def first_axis(self, chain: ToolChain) -> Array | None:
-        """The axis of the first tool of a chain, (3,); None without a tool.
+    def axis(self, number: int) -> Array:
+        """An axis by its number, (3,) unit vector.
 
         Parameters
         ----------
-        chain : ToolChain
+        number : int
         """
-        return self._axes[chain.axis] if chain.tools else None
+        return np.asarray(self._axes[number])
+
+    def numbers_of(self, axes: Sequence[Array]) -> frozenset[int]:
+        """The numbers of those of some axes that are screened.
+
+        Parameters
+        ----------
+        axes : sequence of (3,) arrays
+        """
+        found = (np.flatnonzero(np.abs(self._axes - axis).max(axis=1) < _SAME_AXIS) for axis in axes)
+        return frozenset(int(number) for some in found for number in some)
 
 
 def _place_of(face: Face) -> tuple[NurbsSurface, bytes]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.plan.operation import Operation
-from toolaxis.regions.tool_choice import ToolChain
+from toolaxis.regions.tool_choice import AxisTime, ToolChain
 from toolaxis.shape.face import Face
 from toolaxis.skin.alike import AlikeFace
 
@@ -32,8 +32,12 @@ class WaitingSurface:
         Places in the list of operations of those that left it.
     in_pieces : bool
         Whether the tool reaches too little of it under one axis to be asked for all of it.
+    axes : tuple of AxisTime
+        Axes under which the choice of tools reckoned with it, the quickest first.
     axis : (3,) array or None
-        The axis under which the choice of tools reckoned with it.
+        The axis that was chosen of these.
+    shared : bool
+        Whether the tool machines something else under that axis too.
     copies : tuple of AlikeFace
         Faces that are alike the root, on which the same was done so far.
     """
@@ -43,7 +47,9 @@ class WaitingSurface:
     tool: int
     left_by: frozenset[int] = frozenset()
     in_pieces: bool = False
+    axes: tuple[AxisTime, ...] = ()
     axis: Array | None = None
+    shared: bool = False
     copies: tuple[AlikeFace, ...] = ()
 
     @property
@@ -87,7 +93,7 @@ def wait_alone(op: Operation, origin: WaitingSurface, alike: AlikeFace,
         return []
     axis = origin.axis if op.orientation.axis is None else op.orientation.axis
     moved = None if axis is None else alike.matrix[:3, :3] @ axis
-    return [WaitingSurface(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, moved)]
+    return [WaitingSurface(alike.face, loops, origin.tool, left_by, origin.in_pieces and whole, axis=moved)]
 
 
 def merge_waiting(some: Sequence[WaitingSurface]) -> list[WaitingSurface]:
@@ -105,8 +111,15 @@ def merge_waiting(some: Sequence[WaitingSurface]) -> list[WaitingSurface]:
         before = found.get(key)
         found[key] = one if before is None else replace(
             one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
-            in_pieces=before.in_pieces or one.in_pieces)
+            in_pieces=before.in_pieces or one.in_pieces, axes=_axes_for_both(before.axes, one.axes))
     return list(found.values())
+
+
+def _axes_for_both(one: Sequence[AxisTime], other: Sequence[AxisTime]) -> tuple[AxisTime, ...]:
+    """The axes for two surfaces together, the quickest first; the second's where they have none in common."""
+    seconds = {axis.axis: axis.seconds for axis in one}
+    both = [AxisTime(axis.axis, axis.seconds + seconds[axis.axis]) for axis in other if axis.axis in seconds]
+    return tuple(sorted(both, key=lambda axis: (axis.seconds, axis.axis))) or tuple(other)
 
 
 def find_origin(face: Face, named: Mapping[str, WaitingSurface]) -> WaitingSurface:

@@ -1,0 +1,129 @@
+"""Faces that take much longer with their tools than others were reckoned to take: which, and what is better."""
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from toolaxis.job.planning.face_by_face import area_machined
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, PlanInputs
+from toolaxis.regions.tool_choice import ToolChain
+from toolaxis.shape.face import Face
+from toolaxis.tools.tool import Tool
+
+#: How many times the reckoned cutting time passes take, about: they run out, and their narrowest place sets the strip.
+_MADE = 1.4
+#: What other tools have to promise: a share of the cutting time that was made, and s.
+_SHARE, _SECONDS = 0.2, 8.0
+#: Share of a face's area that may stay open more.
+_SAME = 0.01
+
+
+class ReckonedFace(NamedTuple):
+    """What the choice of tools said of a sub-surface: first : its first tool;  chains : what was to choose from."""
+
+    first: int
+    chains: tuple[ToolChain, ...]
+
+
+@dataclass(frozen=True)
+class FirstRound:
+    """What the choice of tools said of the faces of a part.
+
+    Attributes
+    ----------
+    reckoned : dict
+        Of each face, by its number, and of each of its sub-surfaces.
+    """
+
+    reckoned: dict[int, list[ReckonedFace]] = field(default_factory=dict)
+
+    def add(self, faces: Sequence[Face], chosen: ToolChain, chains: Sequence[ToolChain]) -> None:
+        """Keep what was said of a sub-surface and those that are alike.
+
+        Parameters
+        ----------
+        faces : sequence of Face
+        chosen : ToolChain
+        chains : sequence of ToolChain
+            All that were to choose from.
+        """
+        for face in faces:
+            if chosen.tools:
+                self.reckoned.setdefault(face.number, []).append(ReckonedFace(chosen.tools[0], tuple(chains)))
+
+    def with_other_tools(self, made: Sequence[Operation], inputs: PlanInputs,
+                         allowed: Collection[int]) -> dict[int, list[int]]:
+        """The faces that smaller tools may take less time for than was made, by the first of these tools.
+
+        Parameters
+        ----------
+        made : sequence of Operation
+            Of all faces.
+        inputs : PlanInputs
+        allowed : collection of int
+            Numbers of the tools that may be used.
+
+        Returns
+        -------
+        dict of int to list of int
+            Numbers of tools, with those of faces.
+        """
+        found: dict[int, list[int]] = {}
+        for number, sub_surfaces in self.reckoned.items():
+            own = [op for op in made if op.face.number == number]
+            if len(sub_surfaces) != 1 or any(op.failed for op in own):
+                continue
+            likely = [(_likely_seconds(chain), chain.tools[0]) for chain in sub_surfaces[0].chains
+                      if chain.tools and chain.tools[0] > sub_surfaces[0].first and set(chain.tools) <= set(allowed)]
+            spent = sum(op.seconds(inputs.feedrate, inputs.rapid) for op in own)
+            if likely and spent - min(likely)[0] >= max(_SECONDS, _SHARE * spent):
+                found.setdefault(min(likely)[1], []).append(number)
+        return found
+
+
+def tools_of(operations: Iterable[Operation]) -> frozenset[Tool]:
+    """The tools of operations that have an axis.
+
+    Parameters
+    ----------
+    operations : iterable of Operation
+    """
+    return frozenset(op.tool for op in operations if op.done)
+
+
+def seconds_of(operations: Sequence[Operation], tools: frozenset[Tool], inputs: PlanInputs) -> float:
+    """Time of operations, with an index move for each and a change for each further tool, s.
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+    tools : frozenset of Tool
+        That others use.
+    inputs : PlanInputs
+    """
+    cut = sum(op.seconds(inputs.feedrate, inputs.rapid) + INDEX_SECONDS for op in operations if op.done)
+    return cut + CHANGE_SECONDS * len(tools_of(operations) - tools)
+
+
+def takes_less_time(one: Sequence[Operation], other: Sequence[Operation], tools: frozenset[Tool],
+                    inputs: PlanInputs) -> bool:
+    """Whether some operations take less time than others on the same face, and machine as much.
+
+    Parameters
+    ----------
+    one, other : sequence of Operation
+    tools : frozenset of Tool
+        That further operations use.
+    inputs : PlanInputs
+    """
+    area = sum(op.face.area for op in other)
+    if area_machined(one) < area_machined(other) - _SAME * area:
+        return False
+    return seconds_of(one, tools, inputs) <= seconds_of(other, tools, inputs) - INDEX_SECONDS
+
+
+def _likely_seconds(chain: ToolChain) -> float:
+    """What the cuts of a chain take when it is made, about, and what it leaves, s: into how many sub-surfaces faces
+    fall, and so how many index moves there are, nobody knows before."""
+    return _MADE * (chain.seconds - INDEX_SECONDS * len(chain.tools)) + chain.charge

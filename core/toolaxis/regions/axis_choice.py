@@ -1,0 +1,129 @@
+"""Which axes the surfaces of a part share that one tool machines: least cutting time and index moves together."""
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.regions.cells import FaceCells
+from toolaxis.regions.prices import widths
+from toolaxis.regions.reach_screen import ReachScreen
+from toolaxis.regions.scene import ReachScene
+from toolaxis.regions.searched_scene import tighten_scene
+from toolaxis.regions.tool_choice import AxisTime
+from toolaxis.search.face_problem import FaceProblem
+from toolaxis.shape.measure import mean_width
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: What a step has to save, s, and the time that stands for an axis that does not serve, s.
+_LEAST_SAVED, _NEVER = 1e-6, 1e9
+#: Size of cells in radii of the cutter and in mean widths of the face at most, and how many of them about.
+_SIZE, _ACROSS, _CELLS = 0.4, 1 / 3, 200
+#: Share of what its own axis reaches of a surface that another may miss.
+_MISSED = 0.01
+
+
+def reckon_axes(job: FaceProblem, scene: ReachScene, axes: Array, own: int, rate: float,
+                move: float) -> tuple[AxisTime, ...]:
+    """The axes that reach all that one of them reaches of a surface, and take less than an index move longer.
+
+    Parameters
+    ----------
+    job : FaceProblem
+        Of the surface.
+    scene : ReachScene
+        Of the part that it belongs to.
+    axes : (k, 3) array
+        Unit vectors.
+    own : int
+        Number of the axis that is known to reach it.
+    rate : float
+        Feed rate, mm/s.
+    move : float
+        Time of an index move, s.
+
+    Returns
+    -------
+    tuple of AxisTime
+        The quickest first; that one alone where the screening does not see what it reaches.
+    """
+    worth = job.worth
+    face, tool = worth.face, worth.tool
+    size = min(_SIZE * tool.radius, _ACROSS * mean_width(face))
+    cells = FaceCells.sized(face, max(size, (face.area / _CELLS) ** 0.5))
+    wide = widths(cells, [tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0]
+    held = ReachScreen(cells, tighten_scene(job, scene)).screen([tool], axes, (wide > 0)[None])[0]
+    reached = held @ cells.area
+    if not reached[own] > 0:
+        return (AxisTime(own, 0.0),)
+    seconds = np.where(held, cells.area / np.where(held, wide, 1.0), 0.0).sum(axis=1) / rate
+    good = np.flatnonzero((reached >= (1 - _MISSED) * reached[own]) & (seconds <= seconds[own] + move))
+    return tuple(AxisTime(int(k), float(seconds[k])) for k in good[np.argsort(seconds[good], kind="stable")])
+
+
+def choose_axes(options: Sequence[Sequence[AxisTime]], used: Collection[int], move: float) -> tuple[int, ...]:
+    """The axis of each surface with which all take least time together.
+
+    Parameters
+    ----------
+    options : sequence of sequence of AxisTime
+        Of each surface, one at least.
+    used : collection of int
+        Axes that the tool is used under anyway: these cost no index move.
+    move : float
+        Time of an index move, s.
+
+    Returns
+    -------
+    tuple of int
+
+    Notes
+    -----
+    The facility location problem: axes are added, dropped and exchanged one by one as long as that saves time, the best
+    such step each time.  On small cases that is the optimum nearly always; the difference is seconds.
+    """
+    if not options:
+        return ()
+    axes = sorted({one.axis for some in options for one in some})
+    place = {axis: k for k, axis in enumerate(axes)}
+    seconds = np.full((len(options), len(axes)), _NEVER)
+    for row, some in enumerate(options):
+        for one in some:
+            seconds[row, place[one.axis]] = one.seconds
+    price = np.array([0.0 if axis in used else move for axis in axes])
+    quickest = np.isin(np.arange(len(axes)), seconds.argmin(axis=1))
+    most = np.arange(len(axes)) == int((seconds.sum(axis=0) + price).argmin())
+    held = min((_improve_choice(seconds, price, begin) for begin in (quickest, most)),
+               key=lambda one: _cost(seconds, price, one))
+    return tuple(axes[k] for k in np.where(held, seconds, np.inf).argmin(axis=1))
+
+
+def _cost(seconds: Array, price: Array, held: Bools) -> float:
+    """Time of all surfaces with the axes that are held, index moves included, s."""
+    return float(np.where(held, seconds, np.inf).min(axis=1).sum() + price[held].sum())
+
+
+def _improve_choice(seconds: Array, price: Array, held: Bools) -> Bools:
+    """Axes that are held, (k,), better by single steps until none of these saves time."""
+    while True:
+        own = np.where(held, seconds, np.inf)
+        order = np.sort(own, axis=1)
+        first, second = order[:, 0], np.minimum(order[:, 1] if order.shape[1] > 1 else np.inf, _NEVER)
+        # What surfaces take without each of the axes that are held, and without dropping any, (1 + held, surfaces).
+        dropped = np.flatnonzero(held)
+        without = np.vstack([first, *(np.where(own.argmin(axis=1) == k, second, first) for k in dropped)])
+        saved = np.append(0.0, price[dropped])
+        # The last column adds none.
+        added = np.stack([np.minimum(one[:, None], seconds).sum(axis=0) + np.where(held, np.inf, price)
+                          for one in without])
+        costs = np.hstack([added, without.sum(axis=1)[:, None]]) - saved[:, None]
+        step = np.unravel_index(costs.argmin(), costs.shape)
+        if costs[step] >= first.sum() - _LEAST_SAVED:
+            return held
+        held = held.copy()
+        if step[0] > 0:
+            held[dropped[step[0] - 1]] = False
+        if step[1] < len(held):
+            held[step[1]] = True
