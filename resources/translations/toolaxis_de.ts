@@ -35,6 +35,10 @@
    <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
   </message>
   <message>
+   <source>Any number of tools</source>
+   <translation>Beliebig viele Werkzeuge</translation>
+  </message>
+  <message>
    <source>Area</source>
    <translation>Fläche</translation>
   </message>
@@ -57,6 +61,10 @@
   <message>
    <source>Blade {}</source>
    <translation>Schaufel {}</translation>
+  </message>
+  <message>
+   <source>Bull nose D{}, R{}</source>
+   <translation>Torusfräser D{}, R{}</translation>
   </message>
   <message>
    <source>Cancel</source>
@@ -157,6 +165,10 @@
   <message>
    <source>Finishing {}</source>
    <translation>Schlichten {}</translation>
+  </message>
+  <message>
+   <source>Fixed axes</source>
+   <translation>Feste Achsen</translation>
   </message>
   <message>
    <source>Folder</source>
@@ -423,6 +435,10 @@
    <translation>Alle speichern...</translation>
   </message>
   <message>
+   <source>Scallop height {}</source>
+   <translation>Rillenhöhe {}</translation>
+  </message>
+  <message>
    <source>Scallop limit</source>
    <translation>Grenze der Rillenhöhe</translation>
   </message>
@@ -627,6 +643,10 @@
    <translation>Zeit</translation>
   </message>
   <message>
+   <source>Tolerance {}</source>
+   <translation>Toleranz {}</translation>
+  </message>
+  <message>
    <source>Tool</source>
    <translation>Werkzeug</translation>
   </message>
@@ -685,6 +705,10 @@
   <message>
    <source>Two contacts</source>
    <translation>Zwei Berührungen</translation>
+  </message>
+  <message>
+   <source>Use the general rack</source>
+   <translation>Allgemeines Magazin nehmen</translation>
   </message>
   <message>
    <source>Verify</source>
@@ -1759,6 +1783,10 @@
    <translation>Rillenhöhe</translation>
   </message>
   <message>
+   <source>Sets this in the fields and computes again. It may help; only the new result tells.</source>
+   <translation>Trägt dies in die Felder ein und rechnet neu. Es kann helfen; erst das neue Ergebnis sagt es.</translation>
+  </message>
+  <message>
    <source>Setup</source>
    <translation>Aufspannung</translation>
   </message>
@@ -1817,10 +1845,6 @@
   <message>
    <source>Takes the vertex that is selected in the 3D view as the origin. It moves along with the part.</source>
    <translation>Nimmt den in der 3D-Ansicht ausgewählten Punkt als Nullpunkt. Er bewegt sich mit dem Teil.</translation>
-  </message>
-  <message>
-   <source>Takes this and computes again. It may help with the faces that have no axis.</source>
-   <translation>Übernimmt das und berechnet neu. Es kann bei den Flächen ohne Achse helfen.</translation>
   </message>
   <message>
    <source>Tapered</source>

@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
-from toolaxis.plan.remedies import Remedy, remedies_of
+from toolaxis.plan.remedies import Remedy, remedies_advised, remedies_of
 
 HOLDER = [(20.0, 0.0), (20.0, 40.0)]
 
@@ -90,3 +90,41 @@ def test_a_face_whose_normals_spread_too_far_is_offered_to_be_divided(plan) -> N
     lost = replace(lost, operations=(replace(op, orientation=replace(op.orientation, map=None)),))
     assert remedies_of(lost) == (Remedy("regions", "auto", 1.0),)
     assert remedies_of(lost, divided=True) == ()
+
+
+ADVICE = (
+    ("the cutter gouges face 3. Face 4 stands 0.034 mm out over face 3 there, more than the 0.1 mm that are taken as "
+     "inaccuracy of the file: repair the edge, or plan with a larger machining tolerance", [("tolerance", 0.05)]),
+    ("the corner radius 2 mm gouges face 1 by 0.31 mm at (1, 2, 3) with every axis; 0.01 mm is allowed: use a smaller "
+     "corner radius", [("tool", "torus:12x1")]),
+    ("no pass is left on face 1: walls or faces beside it keep the tool off everywhere along the passes; divide the "
+     "face (--regions), or use a smaller cutter", [("tool", "ball:8"), ("regions", "auto")]),
+    ("the computer's memory does not suffice: choose a larger scallop height or fewer faces", [("scallop", 0.5)]),
+    ("scallop is 8.0 mm, not below the cutter radius 6.0 mm: give a smaller scallop height", [("scallop", 0.1)]),
+    ("the tool comes too close near (0, 0, 0) however much it leans along the pass: choose another strategy, a longer "
+     "stick-out or a slimmer holder", [("stickout", 75.0)]),
+    ("all axes are taken", []))
+
+
+@pytest.mark.parametrize(("text", "offered"), ADVICE)
+def test_what_a_sentence_advises_is_offered(text, offered) -> None:
+    tool = ta.Tool.torus(diameter=12, corner_radius=2, stickout=50, holder=HOLDER)
+    found = remedies_advised([text], tool, (0.2, 0.01))
+    assert [(one.name, one.value) for one in found] == offered and all(one.share == 1.0 for one in found)
+
+
+def test_no_advice_leads_out_of_what_can_be_planned() -> None:
+    ball = ta.Tool.ball(diameter=4, stickout=45, holder=HOLDER)
+    every = " ".join(text for text, _ in ADVICE).replace("0.034", "0.2")
+    found = {one.name: one.value for one in remedies_advised([every], ball, (1.0, 0.1), divided=True)}
+    assert found == {"tool": "ball:2", "scallop": 0.2}, "no tolerance above 0.1 mm, no stick-out above 12 diameters"
+    assert [one.value for one in remedies_advised(["use a smaller corner radius"], ball, (0.1, 0.01))] == []
+
+
+def test_advice_of_a_face_without_a_map_comes_with_what_maps_say(plan) -> None:
+    lost = refused(plan, REASONS.index("gouge"))
+    advice = "no pass is left; divide the face, or use a smaller cutter"
+    found = replace(lost.operations[0].orientation, reasons=(advice,))
+    told = replace(lost, operations=(replace(lost.operations[0], orientation=found),))
+    assert {(one.name, one.value) for one in remedies_of(told)} == {("tool", "ball:8"), ("regions", "auto")}
+    assert [one.name for one in remedies_of(told, divided=True)] == ["tool"]

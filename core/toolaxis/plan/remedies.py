@@ -1,10 +1,11 @@
-"""What may make a refused face possible: a longer stick-out, another cutter, several axes, no limits.
+"""What may make a refused face possible: a longer stick-out, another cutter, several axes, a tolerance, no limits.
 
-Found from what forbids most axes of the maps of operations without an axis.  A remedy is an offer, not a proof: only
-planning again tells what comes of it.
+Found from what forbids most axes of the maps of operations without an axis, and from the sentences that say why there
+is none: what they advise is offered.  A remedy is an offer, not a proof: only planning again tells what comes of it.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.tolerances import GREATEST
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -24,6 +26,15 @@ _DIAMETERS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25
 _STEP, _LONGEST = 5.0, 12.0
 #: Share of the forbidden axes below which a reason is not worth a remedy; points along a side of a face.
 _WORTH, _SIDE = 0.1, 9
+#: Values that are offered for scallop height and tolerance, mm.
+_HEIGHTS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
+#: What sentences advise: words in them, and the input that it is.
+_ADVICE = (("larger machining tolerance", "tolerance"), ("smaller corner radius", "corner"),
+           ("smaller cutter", "slimmer"), ("take a smaller one", "slimmer"), ("smaller tool", "slimmer"),
+           ("slimmer tool", "slimmer"), ("longer stick-out", "longer"), ("slimmer or longer tool", "longer"),
+           ("larger scallop height", "coarser"), ("greater scallop height", "coarser"),
+           ("coarser --scallop", "coarser"), ("smaller scallop height", "finer"), ("divide the face", "divide"))
+_OUT = re.compile(r"stands ([0-9.]+) mm out")
 
 
 @dataclass(frozen=True)
@@ -33,11 +44,11 @@ class Remedy:
     Attributes
     ----------
     name : str
-        "stickout", "tool", "regions" or "limits".
+        "stickout", "tool", "regions", "limits", "tolerance" or "scallop".
     value : float or str
-        Stick-out, mm; short form of a cutter; "auto"; or "" for no limits.
+        Stick-out, tolerance or scallop height, mm; short form of a cutter; "auto"; or "" for no limits.
     share : float
-        Of the axes that are forbidden, those that are for what this remedies, 0 to 1.
+        Of the axes that are forbidden, those that are for what this remedies, 0 to 1; 1 for what a sentence advises.
     """
 
     name: str
@@ -46,7 +57,7 @@ class Remedy:
 
 
 def remedies_of(plan: Plan, divided: bool = False) -> tuple[Remedy, ...]:
-    """Remedies for operations without an axis, the most promising first.
+    """Remedies for operations without an axis, the most promising first, and those that a sentence advises before all.
 
     Parameters
     ----------
@@ -58,6 +69,16 @@ def remedies_of(plan: Plan, divided: bool = False) -> tuple[Remedy, ...]:
     lost = [op for op in plan.operations if _is_lost(op, plan)]
     if not lost or len(plan.tools) > 1:
         return ()
+    advised = remedies_advised((why for op in lost for why in op.orientation.reasons), plan.tools[0],
+                               (plan.inputs.scallop, plan.inputs.tolerance.gouge), divided)
+    found = _by_maps(plan, lost, divided)
+    known = {one.name for one in found}
+    found += [one for one in advised if one.name not in known]
+    return tuple(sorted(found, key=lambda one: -one.share))
+
+
+def _by_maps(plan: Plan, lost: Sequence[Operation], divided: bool) -> list[Remedy]:
+    """Remedies for what forbids most axes."""
     counts = np.zeros(_HOLDER + 1)
     for op in lost:
         if op.orientation.map is not None:
@@ -74,7 +95,69 @@ def remedies_of(plan: Plan, divided: bool = False) -> tuple[Remedy, ...]:
         found.append(Remedy("regions", "auto", float(shares[_BACK])))
     if plan.inputs.limits:  # those of a machine are no choice
         found.append(Remedy("limits", "", float(shares[_LIMITS])))
-    return tuple(sorted((one for one in found if one.share >= _WORTH), key=lambda one: -one.share))
+    return [one for one in found if one.share >= _WORTH]
+
+
+def remedies_advised(sentences: Iterable[str], tool: Tool, heights: tuple[float, float],
+                     divided: bool = False) -> tuple[Remedy, ...]:
+    """What sentences advise, as inputs: those of a plan, or the message of an error.
+
+    Parameters
+    ----------
+    sentences : iterable of str
+        English.
+    tool : Tool
+        The tool that was planned with.
+    heights : (float, float)
+        Scallop height and machining tolerance, mm.
+    divided : bool
+        Whether faces are divided already.
+
+    Returns
+    -------
+    tuple of Remedy
+        Each kind once, in the order of the sentences.
+    """
+    scallop, tolerance = heights
+    found: dict[str, Remedy] = {}
+    for text in sentences:
+        out = max([tolerance, *(float(value) for value in _OUT.findall(text))])
+        known = {"tolerance": _larger("tolerance", out, GREATEST), "corner": _sharper(tool),
+                 "slimmer": _slimmer(tool, 1.0), "longer": _half_longer(tool),
+                 "coarser": _larger("scallop", scallop, tool.radius / 2), "finer": _finer(scallop, tool),
+                 "divide": [] if divided else [Remedy("regions", "auto", 1.0)]}
+        for words, kind in _ADVICE:
+            if words in text:
+                for one in known[kind]:
+                    found.setdefault(one.name, one)
+    return tuple(found.values())
+
+
+def _larger(name: str, value: float, most: float) -> list[Remedy]:
+    """The next usual height above a value, as far as one may go."""
+    higher = min((one for one in _HEIGHTS if one > value + 1e-9), default=None)
+    return [] if higher is None or higher > most + 1e-9 else [Remedy(name, higher, 1.0)]
+
+
+def _finer(scallop: float, tool: Tool) -> list[Remedy]:
+    """The next usual scallop height below, far below the radius of the cutter."""
+    lower = max((one for one in _HEIGHTS if one < scallop - 1e-9 and one <= tool.radius / 10), default=None)
+    return [] if lower is None else [Remedy("scallop", lower, 1.0)]
+
+
+def _sharper(tool: Tool) -> list[Remedy]:
+    """A bull nose of the same diameter with half the corner radius."""
+    if tool.kind != "torus" or tool.flat_radius == 0:
+        return []
+    return [Remedy("tool", f"torus:{2 * tool.radius:g}x{tool.corner_radius / 2:g}", 1.0)]
+
+
+def _half_longer(tool: Tool) -> list[Remedy]:
+    """Half as much stick-out again, in steps."""
+    if tool.stickout is None or "holder" not in tool.outlines:
+        return []
+    longer = _STEP * ceil(1.5 * tool.stickout / _STEP)
+    return [Remedy("stickout", longer, 1.0)] if longer <= _LONGEST * 2 * tool.radius else []
 
 
 def _is_lost(op: Operation, plan: Plan) -> bool:

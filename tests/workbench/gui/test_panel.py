@@ -192,6 +192,32 @@ def test_limits_that_leave_no_axis(desk, form, remembered):
     assert not form.remedy1.isVisible() and desk.standard_button("Ok").isEnabled()
 
 
+def test_a_refused_value_and_a_failed_computation_have_their_remedy_beside_them(desk, form, monkeypatch, remembered):
+    from freecad.toolaxis.services import api
+
+    desk.type(form.scallop, "30 mm")
+    assert "give a smaller scallop height" in form.message.text() and not form.compute.isEnabled()
+    assert [button.isVisible() for button in (form.remedy1, form.remedy2)] == [True, False]
+    assert form.remedy1.text() == "Scallop height 0.20 mm"
+    desk.shot("11-remedy-of-a-value")
+    usual = api.task
+
+    def lacking(inputs):
+        def compute(progress):
+            raise MemoryError
+        return compute if inputs.scallop < 0.25 else usual(inputs)
+
+    monkeypatch.setattr(api, "task", lacking)
+    desk.press(form.remedy1)
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "it is computed")
+    assert "memory does not suffice" in form.message.text() and desk.shown(form.scallop) == "0.20 mm"
+    assert form.remedy1.isVisible() and form.remedy1.text() == "Scallop height 0.50 mm"
+    desk.shot("12-remedy-of-an-error")
+    desk.press(form.remedy1)
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "it is computed")
+    assert "Every face has an axis" in form.message.text() and not form.remedy1.isVisible()
+
+
 TYPED = (("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"), ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"),
          ("0.1 kg", "0.02 mm"), ("nonsense", "0.02 mm"), ("", "0.02 mm"))
 

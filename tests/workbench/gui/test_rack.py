@@ -188,6 +188,19 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     desk.press(desk.standard_button("Close"))
 
 
+def test_what_one_tool_leaves_is_offered_to_all(desk, form, remembered):
+    form.tabs.setCurrentWidget(form.toolTab)
+    form.mostTools.setValue(1)
+    desk.computed(form)
+    assert "with 1 of 2 tools" in form.message.text() and "100" not in form.message.text().split(" of ")[0]
+    offered = [button.text() for button in (form.remedy1, form.remedy2, form.remedy3) if button.isVisible()]
+    assert offered == ["Any number of tools", "Use the general rack"]
+    desk.shot("95-rest-of-one-tool")
+    desk.press(form.remedy1)
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "it is computed again")
+    assert form.mostTools.value() == 0 and "with 2 of 2 tools" in form.message.text()
+
+
 def test_stop_keeps_what_is_finished(desk, grooved, form):
     desk.press(form.compute)
     desk.wait(lambda: "D6" in form.message.text() or not form.stop.isEnabled(), "the smaller tool begins")

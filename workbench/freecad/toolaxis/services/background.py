@@ -246,6 +246,11 @@ class BackgroundWork(QtCore.QObject):
         self._told: tuple[str, float, float] | None = None
         self.running = False
 
+    @property
+    def message(self) -> str:
+        """Why it could not be done, in the program's own words; empty where it was not refused."""
+        return self._thread.message
+
     def start(self) -> "BackgroundWork":
         """Begin; returns at once where the libraries are loaded."""
         with suppress(ImportError):  # the thread tells it

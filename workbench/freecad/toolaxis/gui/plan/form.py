@@ -13,7 +13,7 @@ from freecad.toolaxis.gui.plan.setup_tab import SetupTab
 from freecad.toolaxis.gui.plan.shown_inputs import inputs_to_show
 from freecad.toolaxis.gui.widgets.fields import OutlineTable
 from freecad.toolaxis.gui.widgets.quantity import QuantityField
-from freecad.toolaxis.services.background import sentence
+from freecad.toolaxis.services.background import one_line, sentence
 from PySide import QtWidgets
 
 from toolaxis.plan.choices import DIRECTIONS, ISO, PASSES
@@ -70,7 +70,7 @@ class PlanForm:
         self.strategy.addItems(titles())
         self.roughness = self._find("roughness", QtWidgets.QDoubleSpinBox)
         self.switches = {name: self._find(name, QtWidgets.QCheckBox) for name in ("blades", "compare")}
-        self.unshown, self.given = "", ("", 0, "")
+        self.unshown, self.given, self.reason = "", ("", 0, ""), ""
         self.racks.on_change(self._show_what_counts)
         for combo, _ in self.counts.values():
             combo.currentIndexChanged.connect(self._show_what_counts)
@@ -345,14 +345,19 @@ class PlanForm:
                    for name, box in self.switches.items()}}
 
     def refusal(self):
-        """Why the fields cannot be computed with, one sentence; empty where they can."""
+        """Why the fields cannot be computed with, one sentence; empty where they can.
+
+        What the library says against them stays in `reason`, in its own words.
+        """
         from toolaxis.errors import ToolAxisError
 
+        self.reason = ""
         if self.unshown:
             return self.unshown
         try:
             check(self.read())
         except (ToolAxisError, ValueError) as reason:
+            self.reason = one_line(reason)
             return sentence(reason)
         if not self.faces.faces:
             return translate("ToolAxis", "Select one or more faces in the 3D view and press Add selected")

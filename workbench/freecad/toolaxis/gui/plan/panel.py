@@ -30,7 +30,7 @@ from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
-from freecad.toolaxis.services.background import BackgroundWork, sentence
+from freecad.toolaxis.services.background import BackgroundWork, one_line, sentence
 from freecad.toolaxis.services.defaults import defaults
 from freecad.toolaxis.services.macros import again_lines, plan_line, record
 from freecad.toolaxis.services.obstacles import bodies_in
@@ -212,6 +212,9 @@ class PlanPanel(Panel):
         self.form.facesTold.setText(told)
         self.form.facesTold.setToolTip(told)
         self.refusal = self.fields.refusal()
+        if self.work is None and self.fields.reason:
+            with suppress(ValueError):  # a cell of a table is no length
+                self.remedies.show_advice(self.fields.reason, JobInputs(**self.fields.read(), pieces=self._pieces()))
         self.show_state()
 
     def show_state(self):
@@ -270,6 +273,7 @@ class PlanPanel(Panel):
             task = api.task(inputs)
         except Exception as reason:
             self.problem = sentence(reason)
+            self.remedies.show_advice(one_line(reason), inputs)
             self.show_state()
             return
         titles = titles_of(inputs)
@@ -278,7 +282,7 @@ class PlanPanel(Panel):
         self.work.interim.connect(lambda found: self._growing(*found, known))
         self.work.progressed.connect(self.ongoing.report)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
-        self.work.failed.connect(self._not_computed)
+        self.work.failed.connect(lambda message: self._refused(inputs, message))
         self.work.cancelled.connect(lambda: self._not_computed(""))
         self.show_state()
         self.ongoing.begin(translate("ToolAxis", "Reading the part"))
@@ -379,6 +383,13 @@ class PlanPanel(Panel):
         self.remedies.show(plan, inputs)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
         self.show_state()
+
+    def _refused(self, inputs, message):
+        """Say why nothing was computed, and offer what that advises."""
+        advice = self.work.message
+        self._not_computed(message)
+        self.remedies.show_advice(advice, inputs)
+        fit_pages(self.form, _PAGES)
 
     def _not_computed(self, message):
         self.work = None
