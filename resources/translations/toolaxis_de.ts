@@ -15,6 +15,10 @@
    <translation> und {} weitere</translation>
   </message>
   <message>
+   <source>(stale)</source>
+   <translation>(überholt)</translation>
+  </message>
+  <message>
    <source>, about {} s left</source>
    <translation>, noch etwa {} s</translation>
   </message>
@@ -93,6 +97,10 @@
   <message>
    <source>Collisions: {} ({}).</source>
    <translation>Kollisionen: {} ({}).</translation>
+  </message>
+  <message>
+   <source>Compute again</source>
+   <translation>Neu berechnen</translation>
   </message>
   <message>
    <source>Copy details</source>
@@ -269,6 +277,10 @@
   <message>
    <source>Machine {}</source>
    <translation>Maschine {}</translation>
+  </message>
+  <message>
+   <source>Machining time</source>
+   <translation>Bearbeitungszeit</translation>
   </message>
   <message>
    <source>Make CAM jobs</source>
@@ -471,8 +483,8 @@
    <translation>Etwas hat sich geändert: bitte neu berechnen.</translation>
   </message>
   <message>
-   <source>Stale: {}; plan it again</source>
-   <translation>Überholt: {}; bitte neu planen</translation>
+   <source>Stale: {}. Compute again</source>
+   <translation>Überholt: {}. Neu berechnen</translation>
   </message>
   <message>
    <source>Stick-out {}</source>
@@ -732,7 +744,7 @@
   </message>
   <message>
    <source>above the limit</source>
-   <translation>über der Grenze</translation>
+   <translation>über dem Grenzwert</translation>
   </message>
   <message>
    <source>axes: {}</source>
@@ -763,12 +775,20 @@
    <translation>gewählte Achse</translation>
   </message>
   <message>
+   <source>chosen axis: strip width {}, {} passes as made</source>
+   <translation>gewählte Achse: Streifenbreite {}, {} Bahnen wie erzeugt</translation>
+  </message>
+  <message>
    <source>different axes</source>
    <translation>verschiedene Achsen</translation>
   </message>
   <message>
    <source>drawing the map</source>
    <translation>die Karte wird gezeichnet</translation>
+  </message>
+  <message>
+   <source>estimate: strip width {}, {:.0f} passes, {}</source>
+   <translation>Schätzung: Streifenbreite {}, {:.0f} Bahnen, {}</translation>
   </message>
   <message>
    <source>far</source>
@@ -883,12 +903,8 @@
    <translation>die nächste zeigen</translation>
   </message>
   <message>
-   <source>strip width</source>
-   <translation>Streifenbreite</translation>
-  </message>
-  <message>
-   <source>strip width {}, about {:.0f} passes, {}</source>
-   <translation>Streifenbreite {}, etwa {:.0f} Bahnen, {}</translation>
+   <source>strip width, estimated</source>
+   <translation>Streifenbreite, geschätzt</translation>
   </message>
   <message>
    <source>total</source>
@@ -943,7 +959,7 @@
    <translation>{} ist auch die Nullpunktverschiebung von {}: vor dem Programm für diese Orientierung einstellen</translation>
   </message>
   <message>
-   <source>{} is stale: {}. Recompute it.</source>
+   <source>{} is stale: {}. Compute it again.</source>
    <translation>{} ist überholt: {}. Bitte neu berechnen.</translation>
   </message>
   <message>
@@ -1019,8 +1035,8 @@
    <translation>seit {}</translation>
   </message>
   <message>
-   <source>{} with {} of {} tools.</source>
-   <translation>{} mit {} von {} Werkzeugen.</translation>
+   <source>{} with {} of {} tools</source>
+   <translation>{} mit {} von {} Werkzeugen</translation>
   </message>
   <message>
    <source>{}, about {} left</source>

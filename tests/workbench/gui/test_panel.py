@@ -44,6 +44,38 @@ def test_plan_from_selection_to_objects_and_back(desk, wavy, form, remembered):
     assert [thing.Name for thing in document.Objects] == before, "one undo step takes all back"
 
 
+def test_the_triad_of_the_preview_stands_where_the_one_of_the_document_will(desk, wavy, remembered):
+    import FreeCAD
+    import numpy as np
+    from freecad.toolaxis.document.children import frame_of
+    from pivy import coin
+
+    part, face = wavy
+    part.Placement = FreeCAD.Placement(FreeCAD.Vector(30, -20, 10), FreeCAD.Rotation(FreeCAD.Vector(1, 1, 0), 20))
+    part.Document.recompute()
+    form = desk.start(part, face)
+    desk.type(form.scallop, "0.05 mm")
+    desk.computed(form)
+    panel = desk.opened[-1]()
+    desk.wait(lambda: not panel.preview._left, "all is drawn")
+    search = coin.SoSearchAction()
+    search.setType(coin.SoAnnotation.getClassTypeId())
+    search.apply(panel.preview.root)
+    search.setType(coin.SoCoordinate3.getClassTypeId())
+    search.setInterest(coin.SoSearchAction.ALL)
+    search.setSearchingAll(True)
+    triad = search.getPath().getTail()
+    search.apply(triad)
+    paths = search.getPaths()
+    lines = np.array([[paths[k].getTail().point[i].getValue() for i in (0, 1)] for k in range(paths.getLength())])
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    matrix = np.array(frame_of(desk.operation_in(part.Document)).Placement.toMatrix().A).reshape(4, 4)
+    assert len(lines) == 3 and np.allclose(lines[:, 0], matrix[:3, 3], atol=1e-4)
+    ways = lines[:, 1] - lines[:, 0]
+    assert np.allclose(ways / np.linalg.norm(ways, axis=1)[:, None], matrix[:3, :3].T, atol=1e-4)
+
+
 def test_the_map_grows_while_computing(desk, form):
     chart = form.findChild(desk.widgets.QWidget, "axisMap")
     desk.type(form.scallop, "0.01 mm")
@@ -104,8 +136,15 @@ def test_pointer_and_click_on_the_map(desk, form, remembered):
     centre, radius = chart.disc()
     desk.hover(chart, spot(chart, free=False))
     assert "forbidden" in form.pointer.text()
-    desk.hover(chart, spot(chart, free=True))
-    assert "strip width" in form.pointer.text()
+    passes, chosen = desk.text(form.results, 1), chart.position_of(chart.picture.marks["chosen"])
+    picture = chart.picture
+    free = (picture.reason == 0) & (picture.axes @ picture.pole > 0.1)
+    places = [chart.position_of(axis) for axis in picture.axes[free]]
+    desk.hover(chart, max(places, key=lambda at: abs(at.x() - chosen.x()) + abs(at.y() - chosen.y())))
+    assert form.pointer.text().startswith("estimate: strip width ")
+    desk.hover(chart, chosen)
+    assert form.pointer.text().startswith("chosen axis: ") and f", {passes} passes as made" in form.pointer.text()
+    assert f"passes: {passes}," in form.message.text(), "one number for one thing"
     assert not form.lock.isEnabled()
     desk.click(chart, centre + desk.qt.QPointF(0.35 * radius, 0.2 * radius))
     desk.wait(lambda: "Trying" not in form.cost.text(), "the axis is tried")

@@ -131,7 +131,8 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     document = grooved[0].Document
     before = sorted(thing.Name for thing in document.Objects)
     desk.computed(form)
-    assert " machined" in form.message.text() and "with 2 of 2 tools" in form.message.text()
+    assert " machined" in form.message.text() and "with 2 of 2 tools, passes: " in form.message.text()
+    assert "mean step-over " in form.message.text() and "axes: " in form.message.text()
     assert "OK puts the plan into the document" in form.message.text()
     table = form.toolTable
     assert [desk.text(table, row) for row in range(2)] == ["T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
@@ -164,7 +165,7 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     plan.ViewObject.doubleClicked()
     desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
-    assert "with 2 of 2 tools" in form.message.text() and form.toolTable.rowCount() == 4
+    assert "with 2 of 2 tools, passes: " in form.message.text() and form.toolTable.rowCount() == 4
     assert form.rack.currentText() == "my-rack.toml"
     desk.shot("94-reopened")
     desk.press(desk.standard_button("Cancel"))

@@ -50,6 +50,62 @@ def test_saved_views_are_todays_and_open_their_panels(desk, opened):
 def test_an_operation_looks_stale_when_it_is(desk, opened):
     operation = next(thing for thing in opened.Objects if getattr(thing, "Stale", None) is False)
     fresh = operation.ViewObject.Proxy.getIcon()
+    label, scallop = operation.Label, operation.Scallop
     operation.Scallop = 0.2
     opened.recompute()
     assert operation.Stale and operation.ViewObject.Proxy.getIcon() != fresh
+    assert operation.Label == f"{label} (stale)"
+    desk.shot("81-stale-in-the-tree")
+    operation.Label = "Roof"
+    assert operation.Label == "Roof (stale)", "what the user calls it is kept, and that it is stale is still told"
+    operation.Scallop = scallop
+    opened.recompute()
+    assert not operation.Stale and operation.Label == "Roof"
+
+
+def test_the_label_of_what_is_stale_survives_saving_undo_and_another_language(desk, operation, tmp_path):
+    from freecad.toolaxis.document.stale_label import plain_label
+
+    document, label = operation.Document, operation.Label
+    document.openTransaction("Scallop")
+    operation.Scallop = 0.2
+    document.recompute()
+    document.commitTransaction()
+    assert operation.Label == f"{label} (stale)" and plain_label(operation) == label
+    document.undo()
+    document.recompute()
+    assert not operation.Stale and operation.Label == label
+    document.redo()
+    document.recompute()
+    assert operation.Stale and operation.Label == f"{label} (stale)"
+    document.saveAs(str(tmp_path / "Stale.FCStd"))
+    name = operation.Name
+    FreeCAD.closeDocument(document.Name)
+    again = FreeCAD.openDocument(str(tmp_path / "Stale.FCStd")).getObject(name)
+    desk.pump(0.3)
+    assert again.Label == f"{label} (stale)"
+    desk.gui.setLocale("de")
+    again.Tool = "ball:3"
+    again.Document.recompute()
+    again.Label = label
+    assert again.Label == f"{label} (überholt)"
+    desk.gui.setLocale("en")
+
+
+def test_the_menu_of_what_is_stale_computes_it_again(desk, operation, remembered):
+    menu = desk.widgets.QMenu()
+    view = operation.ViewObject
+    view.Proxy.setupContextMenu(view, menu)
+    assert not menu.actions(), "it is not stale"
+    operation.Scallop = 0.1
+    operation.Document.recompute()
+    view.Proxy.setupContextMenu(view, menu)
+    action, = menu.actions()
+    assert action.text() == "Compute again"
+    action.trigger()
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
+    form = desk.form("ToolAxisPlan")
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    assert not operation.Stale and "(stale)" not in operation.Label

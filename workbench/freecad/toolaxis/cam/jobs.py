@@ -16,6 +16,7 @@ from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.placement import placement_from
 from freecad.toolaxis.document.read_operation import OperationRecord
+from freecad.toolaxis.document.stale_label import plain_label
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.transaction import one_step
 from freecad.toolaxis.services.arguments import document_of, operation_of, progress_of
@@ -141,7 +142,8 @@ def _ready(operation):
 
     reasons = why_stale(operation)
     if reasons:
-        raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
+        name = plain_label(operation)
+        raise InvalidInput(f"'{name}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
     if operation.AxisMoves:
         raise InvalidInput(f"the axis of '{operation.Label}' moves while it cuts, and jobs have fixed planes: export a "
                            "program instead, or choose fixed axes")

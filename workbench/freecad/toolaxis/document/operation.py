@@ -7,6 +7,7 @@ from freecad.toolaxis.document.children import DeletionObserver, note
 from freecad.toolaxis.document.inputs import FORMER_TOLERANCE
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.properties import Property, Proxy, assign
+from freecad.toolaxis.document.stale_label import MARK, mark_label
 from freecad.toolaxis.document.staleness import same, standing, why_stale
 from freecad.toolaxis.document.strategies import STRATEGIES
 
@@ -76,6 +77,7 @@ RESULTS = (
     Property("Integer", "Passes", _FOUND, "Number of passes", True),
     Property("Length", "AverageStripWidth", _FOUND, "Area over cutting length", True),
     Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion", True),
+    Property("Time", "MachiningTime", _FOUND, "Time of passes and links", True),
     Property("Length", "Gouge", _FOUND, "Upper bound of the penetration below the machined skin", True),
     Property("Bool", "AxisMoves", _FOUND, "Whether the axis moves while it cuts; Axis is its mean then", True),
     Property("Angle", "MeanLean", _FOUND, "Where the axis moves: its mean angle to the normal, or its constant lead",
@@ -83,6 +85,7 @@ RESULTS = (
     Property("Float", "LeftToCleanUp", _FOUND, "Share of the area left to a clean-up tool", True),
     Property("StringList", "NotChecked", _FOUND, "What the collision check left out because it was not given", True))
 KEPT = (
+    MARK,
     Property("String", "AxisMap", _KEPT, "Orientation with the map of all axes, JSON", True, True),
     Property("String", "Details", _KEPT, "Sub-surface and method, JSON", True, True),
     Property("String", "PlannedWith", _KEPT, "Inputs at the time of planning, JSON", True, True),
@@ -97,8 +100,8 @@ VERDICT = (
     Property("FloatList", "JudgedShapes", _JUDGED, "Shapes at the time of the verdict", True, True),
     Property("StringList", "VerdictReasons", _JUDGED, "Why it failed, and what was not checked", True),
     Property("Length", "ScallopMax", _JUDGED, "Greatest height left where the cutter came", True),
-    Property("Float", "ShareWithin", _JUDGED, "Share of the area, clean-up zones aside, left within the scallop height",
-             True),
+    Property("Float", "ShareWithin", _JUDGED, "Share of the area, clean-up zones aside, left within 1.02 times the "
+             "scallop height", True),
     Property("Length", "GougeMax", _JUDGED, "Deepest gouge", True),
     Property("Length", "GougeAllowed", _JUDGED, "Deepest gouge that is accepted", True),
     Property("VectorList", "WorstScallops", _JUDGED, "Highest places left, in the plane's frame", True),
@@ -197,6 +200,8 @@ def compare(thing, why):
         FreeCAD.Console.PrintLog(f"Tool Axis: {reason!r}\n")
         reasons = [f"it cannot be compared with what was planned ({reason})"]
     assign(thing, StaleReasons=reasons, Stale=bool(reasons))
+    if not reasons and thing.StaleMark:
+        mark_label(thing, "")
 
 
 def _verdict_holds(thing):

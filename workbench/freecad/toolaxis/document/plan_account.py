@@ -44,6 +44,10 @@ class PlanAccount:
         Those that machine something.
     offered : int
         How many could be chosen from.
+    passes, axes : int
+        Of all operations, and different ones; 0 in documents of before.
+    step_over : float
+        Mean distance of passes, mm.
     """
 
     area: float
@@ -54,6 +58,9 @@ class PlanAccount:
     seconds: float
     tools: tuple
     offered: int
+    passes: int = 0
+    axes: int = 0
+    step_over: float = 0.0
 
     @property
     def between(self):
@@ -77,7 +84,20 @@ def account_of(plan):
                                   float(sum(op.face.area * (1 - op.orientation.unreached) for op in done)),
                                   float(sum(op.seconds(rates.feedrate, rates.rapid) for op in done))))
     return PlanAccount(found.area, found.machined, found.unreachable, found.open, found.not_begun, float(plan.seconds),
-                       tuple(rows), len(plan.tools))
+                       tuple(rows), len(plan.tools), sum(op.orientation.passes for op in plan.operations if op.done),
+                       int(plan.orientations), mean_step_over(plan))
+
+
+def mean_step_over(plan):
+    """The mean distance of passes over all operations of a plan, mm; 0 without passes.
+
+    Parameters
+    ----------
+    plan : toolaxis.plan.plan.Plan
+    """
+    done = [op.orientation for op in plan.operations if op.done]
+    length = sum(found.length for found in done)
+    return float(sum(found.average_strip_width * found.length for found in done) / length) if length > 0 else 0.0
 
 
 def account_text(account):

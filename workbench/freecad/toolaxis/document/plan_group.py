@@ -10,6 +10,7 @@ from freecad.toolaxis.document.operation import INPUTS, compare, set_inputs, wat
 from freecad.toolaxis.document.plan_account import account_of, account_text
 from freecad.toolaxis.document.properties import Property, Proxy, assign
 from freecad.toolaxis.document.read_operation import OperationRecord
+from freecad.toolaxis.document.stale_label import MARK, plain_label
 from freecad.toolaxis.document.staleness import changed_inputs, digest
 from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
 
@@ -34,6 +35,7 @@ FIGURES = (
     Property("Area", "NotBegun", _FOUND, "What of it was not begun when the plan was stopped", True),
     Property("StringList", "ToolsUsed", _FOUND, "Tools with their operations and times", True))
 KEPT = (
+    MARK,
     Property("String", "Options", _KEPT, "Length against number of axes, JSON", True, True),
     Property("String", "Baselines", _KEPT, "What other methods come to, JSON", True, True),
     Property("String", "BladesFound", _KEPT, "Blades and copies, JSON", True, True),
@@ -109,7 +111,7 @@ def _of_operations(plan):
     concerned = {}
     for one in operations_in(plan):
         if one.Stale:
-            concerned.setdefault("; ".join(one.StaleReasons) or "out of date", []).append(one.Label)
+            concerned.setdefault("; ".join(one.StaleReasons) or "out of date", []).append(plain_label(one))
     return [f"{_list_labels(labels)}: {reason}" for reason, labels in list(concerned.items())[:_TOLD]]
 
 
@@ -179,7 +181,7 @@ def keep_plan(thing, inputs, plan):
     thing.Baselines = json.dumps([asdict(one) for one in plan.baselines])
     thing.BladesFound = json.dumps(blades_document(plan.blades))
     thing.PlannedWith = digest(inputs)
-    thing.Made = json.dumps({one.Name: one.Label for one in members(thing)})
+    thing.Made = json.dumps({one.Name: plain_label(one) for one in members(thing)})
     assign(thing, Outcome=plan.outcome, Warnings=list(plan.part.warnings), SubSurfaces=len(plan.operations),
            DifferentAxes=plan.orientations, CuttingLength=float(plan.length), Travel=float(plan.travel),
            MachiningTime=float(plan.seconds), Stale=False, StaleReasons=[])
@@ -226,7 +228,7 @@ def keep_figures(thing, plan):
         else:
             found.append(Operation(number, face, tool, orientation_from(json.loads(one.AxisMap))))
     whole = replace(plan, operations=tuple(found))
-    thing.Made = json.dumps({one.Name: one.Label for one in members(thing)})
+    thing.Made = json.dumps({one.Name: plain_label(one) for one in members(thing)})
     needed = [one for one in operations_in(thing) if not one.Motions
               and not any(is_shown(thing) and thing.Shows == CLEAN_UP for thing in one.Group)]
     assign(thing, Outcome="incomplete" if needed else "complete", SubSurfaces=len(found),

@@ -14,6 +14,7 @@ from freecad.toolaxis.document.machine_angles import in_order
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.document.read_shapes import ShapesRead
+from freecad.toolaxis.document.stale_label import plain_label
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.services.arguments import operation_of, progress_of
 
@@ -246,7 +247,8 @@ def _inputs(operation):
 
     reasons = why_stale(operation)
     if reasons:
-        raise InvalidInput(f"'{operation.Label}' is stale ({'; '.join(reasons)}): recompute it before it is written")
+        name = plain_label(operation)
+        raise InvalidInput(f"'{name}' is stale ({'; '.join(reasons)}): recompute it before it is written")
     return inputs_of(operation)
 
 

@@ -49,6 +49,16 @@ def lines_of(reasons):
     return "\n".join(f"{line_of(text)}." for text in reasons)
 
 
+def stale_text(thing):
+    """What to say above the results of a stale operation or plan: what has changed, and what mends it.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
+    return FreeCAD.Qt.translate("ToolAxis", "Stale: {}. Compute again").format(list_of(thing.StaleReasons))
+
+
 def list_of(reasons):
     """Sentences, as the user reads them, in one line.
 

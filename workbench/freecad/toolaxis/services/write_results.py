@@ -191,6 +191,8 @@ def _fill(operation, inputs, plan, which):
     operation.Label = title
     set_inputs(operation, inputs)
     set_results(operation, op.orientation, plan.not_checked)
+    rates = plan.inputs.at_rates_of(op.tool)
+    assign(operation, MachiningTime=float(op.seconds(rates.feedrate, rates.rapid)))
     _keep(operation, inputs, (op, plan), (number, f"{number}{label}"))
     maps = [one for one in operation.Group if one.isDerivedFrom("Mesh::Feature") and not is_shown(one)]
     remove(maps)

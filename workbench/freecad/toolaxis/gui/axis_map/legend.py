@@ -161,7 +161,7 @@ class Legend(QtWidgets.QWidget):
         text = QtCore.QRectF(0, 16, self.width(), 18)
         painter.drawText(text, QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter, low)
         painter.drawText(text, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, high)
-        painter.drawText(text, QtCore.Qt.AlignCenter, translate("ToolAxis", "strip width"))
+        painter.drawText(text, QtCore.Qt.AlignCenter, translate("ToolAxis", "strip width, estimated"))
 
     def _draw_entry(self, painter, entry, at):
         kind, key, text = entry

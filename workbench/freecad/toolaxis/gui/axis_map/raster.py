@@ -37,6 +37,8 @@ class AxisPicture:
         Row of the nearest axis, -1 off the disc; the first row of pixels is the top.
     marks : dict of str to (k, 3) array
         "chosen", "mean normal", "Roman's rule", "other lobes".
+    planned : (float, int) or None
+        Strip width, mm, and number of passes as they were made with the chosen axis.
     """
 
     axes: np.ndarray
@@ -48,6 +50,20 @@ class AxisPicture:
     right: np.ndarray
     nearest: np.ndarray
     marks: dict = field(default_factory=dict)
+    planned: tuple | None = None
+
+    def mark_chosen(self, found):
+        """Mark the axis of an orientation, with what its passes came to; no axis takes the mark away.
+
+        Parameters
+        ----------
+        found : toolaxis.plan.orientation.Orientation
+        """
+        self.marks.pop("chosen", None)
+        self.planned = None
+        if found.axis is not None:
+            self.marks["chosen"] = np.atleast_2d(found.axis)
+            self.planned = (float(found.average_strip_width), int(found.passes)) if found.passes else None
 
     @property
     def span(self):
@@ -156,8 +172,7 @@ def marked(picture, found):
     lobes = [lobe.axis for lobe in found.lobes if lobe.axis is not None]
     if lobes:
         picture.marks["other lobes"] = np.array(lobes)
-    if found.axis is not None:
-        picture.marks["chosen"] = found.axis[None]
+    picture.mark_chosen(found)
     return picture
 
 

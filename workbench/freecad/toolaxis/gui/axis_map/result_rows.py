@@ -5,6 +5,7 @@ import numpy as np
 from freecad.toolaxis.gui.widgets.quantity import fine_text, length_text
 from freecad.toolaxis.gui.widgets.table_entries import fit_rows, put
 from freecad.toolaxis.services.messages import lines_of, shown
+from freecad.toolaxis.services.time_left import clock
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -39,18 +40,21 @@ def _angle(y, x):
     return f"{np.degrees(np.arctan2(y, x)) + 0.0:.2f}°"
 
 
-def measures(found):
+def measures(found, seconds=0.0):
     """Rows of the result table: (name, text) pairs.
 
     Parameters
     ----------
     found : toolaxis.plan.orientation.Orientation
+    seconds : float
+        Time of its passes and links, s; 0 where it is not known.
     """
     rows = [(translate("ToolAxis", "Outcome"), outcome_name(found.outcome))]
     there = found.axis is not None
     texts = [(translate("ToolAxis", "Passes"), lambda: str(found.passes)),
              (translate("ToolAxis", "Strip width"), lambda: length_text(found.average_strip_width)),
              (translate("ToolAxis", "Cutting length"), lambda: length_text(found.length)),
+             *([(translate("ToolAxis", "Machining time"), lambda: clock(seconds))] if seconds > 0 else []),
              *([(translate("ToolAxis", "Over the ideal length"),
                  lambda: f"{100 * (found.length / found.ideal_of_cut - 1):.1f} %")] if found.ideal > 0 else []),
              (translate("ToolAxis", "Gouge, at most"), lambda: fine_text(found.gouge)),

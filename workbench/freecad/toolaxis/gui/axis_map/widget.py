@@ -12,6 +12,8 @@ from PySide import QtCore, QtGui, QtWidgets
 translate = FreeCAD.Qt.translate
 
 _MARGIN, _HEIGHT, _LOW = 12, 300, 84
+#: How near to its mark the pointer is on the chosen axis, pixels.
+_ON_MARK = 9.0
 
 
 def no_map(found):
@@ -122,13 +124,25 @@ class HemisphereMap(QtWidgets.QWidget):
         row = picture.row(axis)
         lean = np.degrees(np.arccos(np.clip(picture.axes[row] @ picture.pole, -1, 1)))
         where = translate("ToolAxis", "{:.0f}° from the mean normal").format(lean)
+        if self._is_on_chosen(position):
+            width, passes = picture.planned
+            return translate("ToolAxis", "chosen axis: strip width {}, {} passes as made").format(length_text(width),
+                                                                                              passes)
         if picture.reason[row] == 0:
             width = length_text(picture.width[row])
-            return translate("ToolAxis", "strip width {}, about {:.0f} passes, {}").format(width, picture.passes[row],
-                                                                                         where)
+            return translate("ToolAxis", "estimate: strip width {}, {:.0f} passes, {}").format(
+                width, picture.passes[row], where)
         amount = missed(picture.reason[row], picture.amount[row])
         by = translate("ToolAxis", ", missed by {}").format(amount) if amount else ""
         return translate("ToolAxis", "forbidden: {}{}, {}").format(reason_name(picture.reason[row]), by, where)
+
+    def _is_on_chosen(self, position):
+        """Whether a position lies on the mark of the chosen axis, whose passes were made."""
+        chosen = self.picture.marks.get("chosen")
+        if chosen is None or self.picture.planned is None:
+            return False
+        at = self.position_of(chosen)
+        return at is not None and np.hypot(at.x() - position.x(), at.y() - position.y()) <= _ON_MARK
 
     def mouseMoveEvent(self, event):
         """Tell what stands under the pointer."""

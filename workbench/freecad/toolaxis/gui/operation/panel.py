@@ -7,6 +7,7 @@ import FreeCADGui
 from freecad.toolaxis.document.children import child
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.read_shapes import ShapesRead
+from freecad.toolaxis.document.stale_label import plain_label
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.raster import marked, picture_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill, measures
@@ -22,7 +23,7 @@ from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import BackgroundWork, sentence
 from freecad.toolaxis.services.export import plan_task
-from freecad.toolaxis.services.messages import lines_of, list_of, shown
+from freecad.toolaxis.services.messages import lines_of, shown, stale_text
 from freecad.toolaxis.services.pictures import drawn
 from PySide import QtCore, QtWidgets
 
@@ -50,7 +51,7 @@ class OperationPanel(Panel):
         self.again.setSingleShot(True)
         self.again.setInterval(_AGAIN)
         self.again.timeout.connect(self._look_again)
-        self.form.setWindowTitle(operation.Label)
+        self.form.setWindowTitle(plain_label(operation))
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "operation.svg")))
         self.map, self.legend = HemisphereMap(self.form, translate("ToolAxis", "There is no map.")), Legend(self.form)
         self.found = orientation_from(json.loads(operation.AxisMap)) if operation.AxisMap else None
@@ -75,12 +76,14 @@ class OperationPanel(Panel):
 
     def _fill(self):
         form, operation = self.form, self.operation
+        form.again.setText(translate("ToolAxis", "Compute again") if operation.Stale
+                           else translate("ToolAxisOperation", "Plan again..."))
         if operation.Stale:
-            reasons = list_of(operation.StaleReasons)
-            tell(form.message, translate("ToolAxis", "Stale: {}; plan it again").format(reasons), bad=True)
+            tell(form.message, stale_text(operation), bad=True)
         else:
             tell(form.message, translate("ToolAxis", "Results hold; verdict: {}").format(shown(operation.Verdict)))
-        fill(form.results, [("", measures(self.found))] if self.found is not None else [])
+        seconds = operation.MachiningTime.Value
+        fill(form.results, [] if self.found is None else [("", measures(self.found, seconds))])
         form.reasons.setText(lines_of(operation.Reasons))
         passes = child(operation, "Path::Feature") is not None
         form.slide.setEnabled(self.tool is not None and passes)
@@ -185,20 +188,24 @@ class OperationPanel(Panel):
             self.drawing = None
 
     def _plan_again(self):
-        chosen = api.planned_with(self.operation)
-        self._open(lambda: PlanPanel(self.document, inputs_of(chosen), chosen))
+        """Open the planning panel; it computes at once where what stands is stale."""
+        chosen, stale = api.planned_with(self.operation), self.operation.Stale
+        self._open(lambda: PlanPanel(self.document, inputs_of(chosen), chosen), PlanPanel.compute if stale else None)
 
     def _verify(self):
         self._open(lambda: VerifyPanel(self.document, [self.operation]))
 
-    def _open(self, make):
-        """Close this panel and open another one."""
+    def _open(self, make, then=None):
+        """Close this panel, open another one, and have it do something."""
         self._close()
         FreeCADGui.Control.closeDialog()
 
         def show():
             try:
-                FreeCADGui.Control.showDialog(make())
+                panel = make()
+                FreeCADGui.Control.showDialog(panel)
+                if then is not None:
+                    then(panel)
             except Exception as reason:
                 warn(sentence(reason))
 

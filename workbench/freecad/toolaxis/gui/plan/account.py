@@ -2,7 +2,7 @@
 
 import FreeCAD
 from freecad.toolaxis.document.tool_colours import tool_colour
-from freecad.toolaxis.gui.widgets.quantity import area_text, number_text
+from freecad.toolaxis.gui.widgets.quantity import area_text, length_text, number_text
 from freecad.toolaxis.gui.widgets.table_entries import fit_rows, put
 from freecad.toolaxis.services.time_left import clock
 from PySide import QtGui, QtWidgets
@@ -46,9 +46,24 @@ def headline(account):
     text = ", ".join([told, *rest]) + "."
     if not account.tools:
         return text
-    used = translate("ToolAxis", "{} with {} of {} tools.").format(clock(account.seconds), len(account.tools),
-                                                                   account.offered)
-    return f"{text} {used}"
+    used = translate("ToolAxis", "{} with {} of {} tools").format(clock(account.seconds), len(account.tools),
+                                                                  account.offered)
+    return f"{text} {', '.join([used, *count_texts(account.passes, account.step_over, account.axes)])}."
+
+
+def count_texts(passes, step_over, axes):
+    """Passes, mean step-over and different axes of a plan in words; what is not known is left out.
+
+    Parameters
+    ----------
+    passes : int
+    step_over : float
+        mm
+    axes : int
+    """
+    found = [translate("ToolAxis", "passes: {}").format(passes),
+             translate("ToolAxis", "mean step-over {}").format(length_text(step_over))] if passes else []
+    return [*found, translate("ToolAxis", "axes: {}").format(axes)] if axes else found
 
 
 def fill_tools(table, account):

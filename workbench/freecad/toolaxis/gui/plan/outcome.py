@@ -1,10 +1,9 @@
 """How a plan that was just made turned out, in one sentence."""
 
 import FreeCAD
-from freecad.toolaxis.document.plan_account import account_of
+from freecad.toolaxis.document.plan_account import account_of, mean_step_over
 from freecad.toolaxis.document.strategies import strategy_of
-from freecad.toolaxis.gui.plan.account import headline
-from freecad.toolaxis.gui.widgets.quantity import length_text
+from freecad.toolaxis.gui.plan.account import count_texts, headline
 from freecad.toolaxis.services.time_left import clock
 
 translate = FreeCAD.Qt.translate
@@ -69,14 +68,8 @@ def figures(plan):
     plan : toolaxis.plan.plan.Plan
         With an operation that has passes.
     """
-    done = [op.orientation for op in plan.operations if op.done]
-    length = sum(found.length for found in done)
-    step = sum(found.average_strip_width * found.length for found in done) / length
-    told = [clock(plan.seconds), translate("ToolAxis", "passes: {}").format(sum(found.passes for found in done)),
-            translate("ToolAxis", "mean step-over {}").format(length_text(step))]
-    if plan.orientations:
-        told.append(translate("ToolAxis", "axes: {}").format(plan.orientations))
-    return ", ".join(told) + "."
+    passes = sum(op.orientation.passes for op in plan.operations if op.done)
+    return ", ".join([clock(plan.seconds), *count_texts(passes, mean_step_over(plan), plan.orientations)]) + "."
 
 
 def touched_once(plan):

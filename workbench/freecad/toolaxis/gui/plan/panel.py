@@ -33,6 +33,7 @@ from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import BackgroundWork, one_line, sentence
 from freecad.toolaxis.services.defaults import defaults
 from freecad.toolaxis.services.macros import again_lines, plan_line, record
+from freecad.toolaxis.services.messages import stale_text
 from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
 from freecad.toolaxis.services.tools import cutter_of
@@ -242,6 +243,8 @@ class PlanPanel(Panel):
         if self.refusal:
             return self.refusal, bool(self.fields.faces.faces)
         plan = self.view.plan
+        if plan is None and self.operation is not None and self.operation.Stale:
+            return stale_text(self.operation), True
         if plan is None:
             told = translate("ToolAxis", "Press Compute to find the axes.")
             return (told if self.standing is None else f"{headline(self.standing)} {told}"), False

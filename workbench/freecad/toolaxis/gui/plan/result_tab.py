@@ -1,7 +1,6 @@
 """The tab of the result: the map, axes tried by a click, what they cost, and the tool on its passes."""
 
 import FreeCAD
-import numpy as np
 from freecad.toolaxis.document.plan_account import account_of
 from freecad.toolaxis.gui.axis_map.legend import Legend
 from freecad.toolaxis.gui.axis_map.result_rows import fill, fill_baselines, measures, sentences
@@ -219,9 +218,9 @@ class AxisView(QtCore.QObject):
 
     def _show_numbers(self):
         op, form = self.operation, self.form
-        columns = [] if op is None else [(translate("ToolAxis", "Plan"), measures(op.orientation))]
+        columns = [] if op is None else [(translate("ToolAxis", "Plan"), self._measures(op))]
         if self.tried is not None:
-            columns.append((translate("ToolAxis", "Tried"), measures(self.tried.orientation)))
+            columns.append((translate("ToolAxis", "Tried"), self._measures(self.tried)))
         fill(form.results, columns)
         form.results.setVisible(op is not None)
         form.cost.setText(self._cost())
@@ -241,6 +240,13 @@ class AxisView(QtCore.QObject):
             box.setChecked(own and op.number in held)
         form.turnFeed.setEnabled(own)
         form.slide.setEnabled(op is not None and (self.tried or op).done)
+
+    def _measures(self, op):
+        """Rows of the result table for an operation; both that are compared have the same."""
+        rates = self.plan.inputs.at_rates_of(op.tool)
+        seconds = [one.seconds(rates.feedrate, rates.rapid) if one.done else 0.0
+                   for one in (op, *([] if self.tried is None else [self.operation, self.tried]))]
+        return measures(op.orientation, seconds[0] if all(seconds) else 0.0)
 
     def _is_copy(self, op):
         return self.plan.blades is not None and op.number in self.plan.blades.copies
@@ -355,9 +361,7 @@ class AxisView(QtCore.QObject):
         self.left = left_to_clean_up(self.plan)
         picture = self.pictures.get(operation.number)
         if picture is not None:
-            picture.marks.pop("chosen", None)
-            if operation.done:
-                picture.marks["chosen"] = np.atleast_2d(operation.orientation.axis)
+            picture.mark_chosen(operation.orientation)
         self._offer(self._titles(), self.form.operation.currentIndex())
         self._show_operation()
         self.changed.emit()

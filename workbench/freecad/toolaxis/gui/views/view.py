@@ -2,8 +2,15 @@
 
 from abc import ABC, abstractmethod
 
+import FreeCAD
 import FreeCADGui
+from freecad.toolaxis.document.stale_label import mark_label
 from freecad.toolaxis.gui.views.icons import icon
+
+translate = FreeCAD.Qt.translate
+
+#: States of a document in which labels are not for us to change.
+_BUSY = ("Restoring", "Transacting")
 
 
 class View:
@@ -44,10 +51,27 @@ class ResultView(View, ABC):
         return icon("operation-stale.svg" if stale else self.icon)
 
     def updateData(self, thing, name):
-        """Show a changed mark."""
+        """Show a changed mark: by the icon and at the end of the label.
+
+        While a document is opened or a step is undone, labels come with all other properties.
+        """
         self.thing = thing
         if name == "Stale":
             thing.ViewObject.signalChangeIcon()
+        if name in ("Stale", "Label") and not any(getattr(thing.Document, state, False) for state in _BUSY):
+            mark_label(thing, f" {translate('ToolAxis', '(stale)')}" if thing.Stale else "")
+
+    def setupContextMenu(self, view, menu):
+        """Offer to compute again what is stale.
+
+        Parameters
+        ----------
+        view : Gui.ViewProviderDocumentObject
+        menu : QMenu
+        """
+        if view.Object.Stale and not FreeCADGui.Control.activeDialog():
+            menu.addAction(translate("ToolAxis", "Compute again")).triggered.connect(
+                lambda *_: compute_again(view.Object))
 
     def onDelete(self, view, names):
         """Delete it without the question that FreeCAD asks for groups: what belongs to it goes with it."""
@@ -68,3 +92,15 @@ class ResultView(View, ABC):
         ----------
         thing : App.DocumentObject
         """
+
+
+def compute_again(thing):
+    """Open the planning panel for an operation or a plan, and compute at once.
+
+    Parameters
+    ----------
+    thing : App.DocumentObject
+    """
+    FreeCADGui.Selection.clearSelection()
+    FreeCADGui.Selection.addSelection(thing.Document.Name, thing.Name)
+    FreeCADGui.runCommand("ToolAxis_Recompute")
