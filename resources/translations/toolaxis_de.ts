@@ -347,8 +347,8 @@
    <translation>Entlang der Bahnen stößt nichts zusammen; betrachtet: {}</translation>
   </message>
   <message>
-   <source>Of the rest within it</source>
-   <translation>Vom Rest innerhalb</translation>
+   <source>Of the rest within {}</source>
+   <translation>Vom Rest innerhalb {}</translation>
   </message>
   <message>
    <source>On the machine</source>
@@ -743,8 +743,8 @@
    <translation>Werkstückkoordinaten {}</translation>
   </message>
   <message>
-   <source>above the limit</source>
-   <translation>über dem Grenzwert</translation>
+   <source>above {}</source>
+   <translation>über {}</translation>
   </message>
   <message>
    <source>axes: {}</source>
@@ -1045,6 +1045,10 @@
   <message>
    <source>{}, about {} left of this step</source>
    <translation>{}, in diesem Schritt noch etwa {}</translation>
+  </message>
+  <message>
+   <source>{}, border aside</source>
+   <translation>{}, ohne den Rand</translation>
   </message>
   <message>
    <source>{}, {:.1f} % less than the first</source>

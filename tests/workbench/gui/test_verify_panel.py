@@ -43,6 +43,52 @@ def test_the_map_is_painted_and_a_click_zooms(desk, planned):
     assert desk.form("ToolAxisVerify") is None
 
 
+def orange(verdict, name):
+    """How many points of a map are painted as above what is accepted."""
+    import numpy as np
+    from freecad.toolaxis.document.colour_scale import ABOVE, judged
+    from freecad.toolaxis.document.verdict_maps import accepted, limit_of
+
+    one, = verdict.maps[:1]
+    rgb = judged(getattr(one, name), limit_of(verdict, name), accepted(verdict, name), one.declared)
+    return int((rgb == np.array(ABOVE)).all(axis=1).sum())
+
+
+def changed(verdict, name, ray, height):
+    """A verdict with another height, or depth, at one ray of its first map, and the share that follows."""
+    from dataclasses import replace
+
+    values = getattr(verdict.maps[0], name).copy()
+    values[ray] = height
+    one = replace(verdict.maps[0], **{name: values})
+    found = replace(verdict, maps=(one, *verdict.maps[1:]))
+    return replace(found, share_within=one.share_within(1.02 * verdict.scallop_limit), area=one.area)
+
+
+def test_picture_and_share_say_the_same(desk, planned):
+    """Found: orange places beside 100.00 %, where they lay on the border or were lost in rounding."""
+    import numpy as np
+    from freecad.toolaxis.gui.verify.panel import share_text
+
+    form = judged(desk)
+    panel = desk.opened[-1]()
+    verdict = panel.found[0][0]
+    one, limit = verdict.maps[0], verdict.scallop_limit
+    names = [form.results.verticalHeaderItem(k).text() for k in range(form.results.rowCount())]
+    assert "Of the rest within 0.05100 mm" in names and panel.scale.most == pytest.approx(0.051)
+    assert orange(verdict, "remaining") == 0 and share_text(verdict) == "100.00 %"
+    border, inner = np.flatnonzero(one.border)[0], int(np.argmin(np.where(one.weight > 0, one.weight, np.inf)))
+    seen = changed(verdict, "remaining", border, 2 * limit)
+    assert orange(seen, "remaining") == 1 and share_text(seen) == "100.00 %, border aside"
+    seen = changed(verdict, "remaining", inner, 2 * limit)
+    assert orange(seen, "remaining") == 1 and share_text(seen) in ("> 99.99 %", f"{100 * seen.share_within:.2f} %")
+    assert share_text(seen) != "100.00 %"
+    seen = changed(verdict, "remaining", inner, 1.01 * limit)
+    assert orange(seen, "remaining") == 0 and share_text(seen) == "100.00 %"
+    seen = changed(verdict, "gouge", inner, 1.01 * verdict.gouge_allowed)
+    assert orange(seen, "gouge") == 1, "the judge accepts no gouge above the tolerance"
+
+
 def test_what_is_left_to_clean_up_is_passed_over(desk, planned):
     """Another operation of the document, which has no axis and no passes, does not keep this one from being judged."""
     from freecad.toolaxis.document.operation import OperationProxy

@@ -38,19 +38,21 @@ def coloured(values, low, high):
     return scale_colours()[np.clip(share * 255, 0, 255).astype(np.intp)]
 
 
-def judged(values, limit, aside=None):
+def judged(values, limit, most, aside=None):
     """Colours of heights or depths, (n, 3) bytes.
 
     Parameters
     ----------
     values : (n,) array
     limit : float
-        End of the scale, mm; what is above it is one colour, what is infinite another.
+        End of the scale, mm.
+    most : float
+        What the judge accepts, mm; what is above it is one colour, what is infinite another.
     aside : (n,) array of bool, optional
         What has a colour of its own, whatever its value.
     """
     rgb = coloured(np.where(np.isfinite(values), values, 0.0), 0.0, limit)
-    rgb[values > limit * 1.02] = ABOVE
+    rgb[values > most] = ABOVE
     rgb[~np.isfinite(values)] = MISSED
     if aside is not None:
         rgb[aside] = ASIDE

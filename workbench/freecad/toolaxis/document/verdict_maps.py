@@ -55,7 +55,7 @@ def drawn(verdict, frame):
         rows = _rows_of(mesh, points)
         values = _values(some, name)[rows]
         aside = _values(some, "declared")[rows].astype(bool) if name == "remaining" else None
-        rgb = judged(values, _limit(verdict, name), aside)
+        rgb = judged(values, limit_of(verdict, name), accepted(verdict, name), aside)
         colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in rgb.tolist()]
         made.append(MapMesh(mesh, values.tolist(), colours))
     return made
@@ -102,7 +102,7 @@ def keep(operation, verdict, frame, maps=None):
     _figures(operation, verdict, back)
     meshes = [_mesh(operation, name) for name, _, _ in _MAPS]
     for thing, one, (name, what, text) in zip(meshes, maps or drawn(verdict, frame), _MAPS, strict=True):
-        _paint(thing, one, _limit(verdict, what))
+        _paint(thing, one, (limit_of(verdict, what), accepted(verdict, what)))
         thing.Label = f"{name} {operation.Label}"
         thing.Shows = text
         passes = next(one for one in operation.Group if one.isDerivedFrom("Path::Feature"))
@@ -152,16 +152,58 @@ def _mesh(operation, name):
     return thing
 
 
-def _limit(verdict, name):
+def limit_of(verdict, name):
+    """The limit that a map is drawn for, mm.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    name : str
+        "remaining" or "gouge".
+    """
     return verdict.scallop_limit if name == "remaining" else verdict.gouge_allowed
 
 
-def _paint(thing, one, limit):
+def accepted(verdict, name):
+    """The greatest value of a map that the judge accepts, mm.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    name : str
+        "remaining" or "gouge".
+    """
+    from toolaxis.verify.verdict import FACTOR
+
+    return limit_of(verdict, name) * (FACTOR if name == "remaining" else 1.0)
+
+
+def places_above(verdict):
+    """Whether the map of heights has anything that stands for an area above what is accepted, and on the border.
+
+    Points on the border stand for no area: they only show the worst.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+
+    Returns
+    -------
+    (bool, bool)
+    """
+    most = accepted(verdict, "remaining")
+    rows = [(one.weight, ~one.declared & (one.remaining > most)) for one in shown_of(verdict, "remaining")]
+    return any((above & (weight > 0)).any() for weight, above in rows), any(
+        (above & (weight == 0)).any() for weight, above in rows)
+
+
+def _paint(thing, one, limits):
     """Put a map into its mesh."""
+    limit, most = limits
     thing.Mesh = one.mesh
     thing.Deviation, thing.VertexColors = one.values, one.colours
     assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
-        "violet: 0", f"yellow: the limit, {limit:g} mm", "orange: above the limit", "pink: never reached",
+        "violet: 0", f"yellow: the limit, {limit:g} mm", f"orange: above {most:g} mm", "pink: never reached",
         "grey: left to clean-up"])
 
 

@@ -17,21 +17,21 @@ class Scale(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.limit, self.name, self.heights = 1.0, "", True
+        self.limit, self.most, self.name, self.heights = 1.0, 1.0, "", True
         self._fit()
 
-    def show_scale(self, name, limit, heights):
+    def show_scale(self, name, limits, heights):
         """Explain another map.
 
         Parameters
         ----------
         name : str
-        limit : float
-            mm
+        limits : (float, float)
+            The end of the scale, and what the judge accepts, mm.
         heights : bool
             Whether heights are shown: places not reached and clean-up zones have colours of their own.
         """
-        self.limit, self.name, self.heights = limit, name, heights
+        (self.limit, self.most), self.name, self.heights = limits, name, heights
         self._fit()
         self.update()
 
@@ -44,7 +44,7 @@ class Scale(QtWidgets.QWidget):
 
     def _entries(self):
         """Colours beyond the scale, with what they mean."""
-        entries = [(ABOVE, translate("ToolAxis", "above the limit"))]
+        entries = [(ABOVE, translate("ToolAxis", "above {}").format(fine_text(self.most)))]
         if self.heights:
             entries += [(MISSED, translate("ToolAxis", "not reached")),
                         (ASIDE, translate("ToolAxis", "left to clean-up"))]

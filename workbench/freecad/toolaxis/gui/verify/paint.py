@@ -71,7 +71,7 @@ class Paint:
         self._timer = QtCore.QTimer()
         self._timer.timeout.connect(self._grow)
 
-    def show(self, skins, what, limit):
+    def show(self, skins, what, limits):
         """Paint faces.
 
         Parameters
@@ -79,8 +79,8 @@ class Paint:
         skins : sequence of PaintedFace
         what : str
             "remaining" or "gouge".
-        limit : float
-            mm
+        limits : (float, float)
+            The end of the scale, and what the judge accepts, mm.
         """
         from pivy import coin
 
@@ -96,7 +96,7 @@ class Paint:
         root.addChild(offset)
         self.marker = coin.SoSeparator()
         root.addChild(self.marker)
-        self.root, self._left = root, [(skin, what, limit) for skin in skins]
+        self.root, self._left = root, [(skin, what, limits) for skin in skins]
         self.view.getSceneGraph().addChild(root)
         self._timer.start()
 
@@ -105,9 +105,9 @@ class Paint:
         if self.root is None or not self._left:
             self._timer.stop()
             return
-        skin, what, limit = self._left.pop()
+        skin, what, limits = self._left.pop()
         aside = skin.declared if what == "remaining" else None
-        self.root.addChild(_paint_skin(skin, judged(getattr(skin, what), limit, aside)))
+        self.root.addChild(_paint_skin(skin, judged(getattr(skin, what), *limits, aside)))
 
     def point_at(self, point, size):
         """Zoom to a point and mark it.

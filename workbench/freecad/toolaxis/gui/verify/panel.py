@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 from freecad.toolaxis.document.children import child
-from freecad.toolaxis.document.verdict_maps import drawn, shown_of
+from freecad.toolaxis.document.verdict_maps import accepted, drawn, limit_of, places_above, shown_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill
 from freecad.toolaxis.gui.play.nodes import view_of
 from freecad.toolaxis.gui.verify.colour_bar import Scale
@@ -148,9 +148,9 @@ class VerifyPanel(Panel):
             return
         verdict, skins = chosen
         what = WHAT[form.what.currentIndex()]
-        limit = verdict.scallop_limit if what == "remaining" else verdict.gouge_allowed
-        self.scale.show_scale(form.what.currentText(), limit, what == "remaining")
-        self.paint.show(skins[what], what, limit)
+        limits = limit_of(verdict, what), accepted(verdict, what)
+        self.scale.show_scale(form.what.currentText(), limits, what == "remaining")
+        self.paint.show(skins[what], what, limits)
         fill(form.results, [("", _measures(verdict))])
         form.reasons.setText(lines_of(verdict.reasons))
         self.places = verdict.worst_scallop if what == "remaining" else verdict.worst_gouge
@@ -201,6 +201,20 @@ def _judge_operation(judge, frame, progress):
     return list(zip(verdicts, skins, strict=True)), drawn(verdicts[0], frame)
 
 
+def share_text(verdict):
+    """The share of the area that is low enough: no round 100 % where the map shows places that are not.
+
+    Parameters
+    ----------
+    verdict : toolaxis.verify.verdict.OperationVerdict
+    """
+    share = f"{100 * verdict.share_within:.2f} %"
+    area, border = places_above(verdict)
+    if share != "100.00 %" or not (area or border):
+        return share
+    return "> 99.99 %" if area else translate("ToolAxis", "{}, border aside").format(share)
+
+
 def _measures(verdict):
     def _room(name):
         room = verdict.clearance.get(name)
@@ -213,7 +227,8 @@ def _measures(verdict):
     return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
             (translate("ToolAxis", "Left to clean-up"), f"{100 * verdict.declared / verdict.area:.1f} %"),
-            (translate("ToolAxis", "Of the rest within it"), f"{100 * verdict.share_within:.2f} %"),
+            (translate("ToolAxis", "Of the rest within {}").format(fine_text(accepted(verdict, "remaining"))),
+             share_text(verdict)),
             (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
             (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),
             (translate("ToolAxis", "Cutter clearance"), _room("cutter")),
