@@ -903,6 +903,10 @@
    <translation>die nächste zeigen</translation>
   </message>
   <message>
+   <source>skins: {} of {} faces, {}</source>
+   <translation>Häute: {} aus {} Flächen, {}</translation>
+  </message>
+  <message>
    <source>strip width, estimated</source>
    <translation>Streifenbreite, geschätzt</translation>
   </message>
@@ -941,6 +945,10 @@
   <message>
    <source>{} The reasons are on the tab Axis.</source>
    <translation>{} Die Gründe stehen auf dem Reiter Achse.</translation>
+  </message>
+  <message>
+   <source>{} and {} more</source>
+   <translation>{} und {} weitere</translation>
   </message>
   <message>
    <source>{} at ({}, {}, {}) on face {}</source>
@@ -1049,6 +1057,10 @@
   <message>
    <source>{}, border aside</source>
    <translation>{}, ohne den Rand</translation>
+  </message>
+  <message>
+   <source>{}, tiny and not listed: {}</source>
+   <translation>{}, winzig und nicht gezeigt: {}</translation>
   </message>
   <message>
    <source>{}, {:.1f} % less than the first</source>

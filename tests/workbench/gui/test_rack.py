@@ -1,6 +1,7 @@
 """A part planned with a rack from the panel: chosen, computed, put into the tree, written out, saved and reopened."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -53,6 +54,72 @@ def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
     assert form.rackTools.count() > 10
     assert desk.text(form.avoid, 0) == "no other body in the document", "what is machined is not to be avoided"
     desk.shot("89-general-rack")
+
+
+@pytest.fixture
+def skin(desk):
+    """The example of a skin of several faces."""
+    return desk.open(Path(__file__).resolve().parents[3] / "examples" / "skin.step")
+
+
+def listed(desk, form):
+    return [desk.text(form.faces, row) for row in range(form.faces.count())]
+
+
+def test_with_a_rack_skins_are_listed_and_one_that_is_marked_is_lit(desk, skin):
+    form = desk.start(skin)
+    faces = form.faces.count()
+    assert faces > 2 and form.facesTold.text() == f"{faces} of {skin.Label}"
+    form.rack.setCurrentIndex(form.rack.findText("general rack"))
+    desk.wait(lambda: "skins" in form.facesTold.text(), "skins are found")
+    rows = listed(desk, form)
+    assert form.facesTold.text().startswith(f"skins: {len(rows)} of {faces} faces, {skin.Label}") and len(rows) < faces
+    assert " more, " in rows[0]
+    row = form.faces.visualRect(form.faces.model().index(0, 0))
+    desk.click(form.faces.viewport(), row.center())
+    chosen, = desk.gui.Selection.getSelectionEx()
+    assert len(chosen.SubElementNames) == int(rows[0].split(" and ")[1].split()[0]) + 1
+    desk.shot("88-skins")
+    form.facesFilter.setText(chosen.SubElementNames[1])
+    assert not form.faces.isRowHidden(0), "the name of any face of a skin finds it"
+    form.facesFilter.setText("")
+    desk.press(form.removeFaces)
+    assert form.faces.count() == faces - len(chosen.SubElementNames), "the rest is no whole part: its faces are alone"
+    form.rack.setCurrentIndex(0)
+    assert "skins" not in form.facesTold.text()
+
+
+def test_tiny_skins_are_not_listed_but_machined(desk, skin):
+    from freecad.toolaxis.gui.plan.face_list import FaceList
+
+    widget = desk.widgets.QListWidget()
+    faces = FaceList(widget)
+    names = [(skin, f"Face{k + 1}") for k in range(len(skin.Shape.Faces))]
+    faces.faces = names
+    faces._areas = {key: 1e-3 if key[2] == "Face1" else area for key, area in faces._areas.items()}
+    faces.show_skins([tuple(names[1:3])])
+    hidden = [widget.isRowHidden(row) for row in range(widget.count())]
+    assert hidden == [False] * (len(names) - 2) + [True] and faces.faces == tuple(names)
+    assert faces.summary().endswith(", tiny and not listed: 1")
+    faces.show_matching("Face1")
+    assert not widget.isRowHidden(widget.count() - 1), "it is listed where it is looked for"
+    assert faces.mark(names[2]) == tuple(names[1:3]), "also where it is hidden"
+    faces.show_matching("")
+    faces.mark(names[2])
+    assert faces.marked == tuple(names[1:3])
+
+
+def test_what_is_computed_is_lit_in_the_view(desk, grooved, form):
+    panel = desk.opened[-1]()
+    thing, name = grooved
+    panel.numbered = {2: (thing, name), 3: (thing, "Face3")}
+    panel.fields.faces.show_skins([((thing, name), (thing, "Face3"))])
+    panel._light("Ball D6: division by reach: face 3+2a (1 of 5): search for the axis", 0.1)
+    chosen, = desk.gui.Selection.getSelectionEx()
+    assert chosen.Object == thing and set(chosen.SubElementNames) == {name, "Face3"}
+    assert panel.fields.faces.faces == ((thing, name),), "a plane that continues the skin is not chosen for that"
+    panel._light("Ball D6: checking", 0.2)
+    assert desk.gui.Selection.getSelectionEx()
 
 
 def test_a_rack_is_chosen_without_typing_a_tool(desk, form):

@@ -53,6 +53,7 @@ from toolaxis.shape.face import Face
 from toolaxis.shape.joining.joined_surface import GREATEST_CORNER
 from toolaxis.shape.part import Part
 from toolaxis.shape.work_origin import format_margins, parse_margins
+from toolaxis.skin.find import find_skins
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import INDEXED, Asked, Strategy
 from toolaxis.tolerances import Tolerance, ToleranceLike
@@ -253,7 +254,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     _tell(progress, "joining faces")
     # Layers are plane sections, to which iso-parametric lines do not matter.
     loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
-                                 WIDE * rack.tools[len(rack.tools) // 2].radius, asked)
+                                 _skin_width(rack), asked)
     if chosen.in_layers:
         loaded, numbers = with_rings(loaded, numbers)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
@@ -340,6 +341,36 @@ def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
     taken = {one.number for one in tools}
     free = (number for number in count(1) if number not in taken)
     return tuple(one if one.number else replace(one, number=next(free)) for one in tools)
+
+
+def group_faces(part: Any, tools: Sequence[ToolSource], inputs: PlanInputs, blades: bool = True,
+                progress: Progress = NO_PROGRESS) -> tuple[tuple[int, ...], ...]:
+    """What several tools machine as one of a whole part: the faces of its skins of two faces or more, by numbers.
+
+    Parameters
+    ----------
+    part : as `toolaxis.plan` takes it
+    tools : sequence of Tool, or of what `toolaxis.load_tools` takes
+    inputs : PlanInputs
+    blades : bool
+        Whether blades are looked for: a part that has any is planned blade by blade, and none of its faces joined.
+    progress : Progress
+
+    Returns
+    -------
+    tuple of tuple of int
+        The skin with the largest face first.
+    """
+    loaded = inputs.prepare_part(load(part))
+    if blades and _find_blades(loaded, progress) is not None:
+        return ()
+    with activate_progress(progress):
+        return find_skins(loaded, _skin_width(_rack(tools, inputs.scallop, (None, None)))).joined
+
+
+def _skin_width(rack: ToolLibrary) -> float:
+    """The width below which planes, cylinders and cones belong to skins, mm: by the middle one of the tools."""
+    return WIDE * rack.tools[len(rack.tools) // 2].radius
 
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:

@@ -174,6 +174,24 @@ def titles_of(inputs):
             for number, (thing, _, own) in found.items()}
 
 
+def faces_by_number(inputs):
+    """All faces of the parts by their numbers, counted through all of them; the chosen ones by the names they have.
+
+    Parameters
+    ----------
+    inputs : freecad.toolaxis.document.inputs.JobInputs
+
+    Returns
+    -------
+    dict of int to (object, "Face7")
+    """
+    from toolaxis.cad.freecad.documents import shape_of
+
+    shapes = [shape_of(thing) for thing in inputs.things]
+    found = every_face(inputs.things, shapes) | numbered(inputs, shapes)
+    return {number: (thing, name) for number, (thing, name, _) in found.items()}
+
+
 def number_in(thing, shape, name):
     """The number of a face in the shape of an object.
 

@@ -12,10 +12,12 @@ translate = FreeCAD.Qt.translate
 
 _DATA = QtCore.Qt.UserRole
 _TICKED = 2  # Qt.Checked, which is a number in data
+#: Share of the area below which a skin is not listed unless it is looked for.
+_TINY = 1e-3
 
 
 class FaceList:
-    """The list of faces to machine, as (object, "Face7").
+    """The list of faces to machine, as (object, "Face7"); a row has one of them, or those that are machined as one.
 
     Parameters
     ----------
@@ -24,8 +26,8 @@ class FaceList:
 
     def __init__(self, widget):
         self.widget = widget
-        self._slots = []
-        self._areas, self._sought = [], ""
+        self._slots, self._sought = [], ""
+        self._faces, self._skins, self._areas = [], (), {}
 
     def on_change(self, slot):
         """Call a slot without arguments whenever faces come or go.
@@ -37,19 +39,19 @@ class FaceList:
         self._slots.append(slot)
 
     def _changed(self):
+        self._skins = ()
+        self._list_rows()
         for slot in self._slots:
             slot()
 
     @property
     def faces(self):
         """What the list holds."""
-        return tuple((thing, sub) for thing, sub in (data_of(self.widget, i, role=_DATA)
-                                                     for i in range(self.widget.count())))
+        return tuple(self._faces)
 
     @faces.setter
     def faces(self, faces):
-        self.widget.clear()
-        self._areas.clear()
+        self._faces = []
         if not self.add(faces):
             self._changed()
 
@@ -60,36 +62,73 @@ class FaceList:
         ----------
         faces : sequence of (object, str)
         """
-        known = {(thing.Document.Name, thing.Name, sub) for thing, sub in self.faces}
-        count = self.widget.count()
-        for thing, sub in faces:
-            if (thing.Document.Name, thing.Name, sub) not in known:
-                known.add((thing.Document.Name, thing.Name, sub))
-                area = _area_of(thing, sub)
-                append(self.widget, ", ".join([sub, *([] if area is None else [area_text(area)]), thing.Label]),
-                       UserRole=(thing, sub))
-                self._areas.append(area)
-        if self.widget.count() > count:
-            self._filter()
+        known, count = set(map(_key, self._faces)), len(self._faces)
+        for face in faces:
+            if _key(face) not in known:
+                known.add(_key(face))
+                self._faces.append(face)
+                self._areas[_key(face)] = _area_of(*face)
+        if len(self._faces) > count:
             self._changed()
-        return self.widget.count() - count
+        return len(self._faces) - count
+
+    def show_skins(self, skins):
+        """Give faces that are machined as one a row together, the largest first, and list no tiny ones.
+
+        Parameters
+        ----------
+        skins : sequence of tuple of (object, str)
+            Narrow planes and cylinders among them that are not in the list; nothing for a row for each face.
+        """
+        known = set(map(_key, self._faces))
+        skins = tuple(skin for skin in skins if known.intersection(map(_key, skin)))
+        if skins != self._skins:
+            self._skins = skins
+            self._areas = {_key(face): _area_of(*face) for skin in skins for face in skin} | self._areas
+            self._list_rows()
+
+    def _list_rows(self):
+        """Write all rows anew."""
+        within = {_key(face) for skin in self._skins for face in skin}
+        rows = [*self._skins, *((face,) for face in self._faces if _key(face) not in within)]
+        if self._skins:
+            rows.sort(key=lambda row: -(self._area(row) or 0.0))
+        self.widget.clear()
+        for row in rows:
+            (thing, name), area = row[0], self._area(row)
+            title = name if len(row) == 1 else translate("ToolAxis", "{} and {} more").format(name, len(row) - 1)
+            append(self.widget, ", ".join([title, *([] if area is None else [area_text(area)]), thing.Label]),
+                   UserRole=row, ToolTipRole=", ".join(name for _, name in row))
+        self._filter()
+
+    def _area(self, row):
+        """Area of the faces of a row, mm^2; None where one cannot be read."""
+        areas = [self._areas[_key(face)] for face in row]
+        return None if None in areas else sum(areas)
+
+    def _row(self, k):
+        return data_of(self.widget, k, role=_DATA)
 
     def summary(self):
-        """How many faces there are, and of which part; empty without any."""
-        things = list(dict.fromkeys(thing for thing, _ in self.faces))
+        """How many faces or skins there are, and of which part; empty without any."""
+        things = list(dict.fromkeys(thing for thing, _ in self._faces))
         if not things:
             return translate("ToolAxis", "none")
         whole = things[0].Label if len(things) == 1 else translate("ToolAxis", "{} parts").format(len(things))
-        return translate("ToolAxis", "{} of {}").format(self.widget.count(), whole)
+        if not self._skins:
+            return translate("ToolAxis", "{} of {}").format(len(self._faces), whole)
+        told = translate("ToolAxis", "skins: {} of {} faces, {}").format(self.widget.count(), len(self._faces), whole)
+        tiny = sum(self._is_tiny(k) for k in range(self.widget.count()))
+        return told if not tiny else translate("ToolAxis", "{}, tiny and not listed: {}").format(told, tiny)
 
     def show_matching(self, text):
-        """Show only some faces; the others stay in the list.
+        """Show only some rows; the others stay in the list.
 
         Parameters
         ----------
         text : str
             What stands in their names, or "< 5" for those with an area of less than 5 in the square of what lengths are
-            shown in; empty for all.
+            shown in; empty for all that are not tiny.
         """
         self._sought = text.strip()
         self._filter()
@@ -103,22 +142,47 @@ class FaceList:
                 self.widget.selectionModel().select(self.widget.model().index(row, 0),
                                                     QtCore.QItemSelectionModel.Deselect)
 
+    def _is_tiny(self, row):
+        """Whether a row is one of many with next to no area: it is machined all the same."""
+        area = self._area(self._row(row))
+        whole = sum(self._area(self._row(k)) or 0.0 for k in range(self.widget.count()))
+        return bool(self._skins) and area is not None and area < _TINY * whole
+
     def _matches(self, row):
+        if not self._sought:
+            return not self._is_tiny(row)
         if self._sought.startswith("<"):
             limit = value_from_text(self._sought[1:], "mm")
             if limit is None:
                 return True
-            area, scale = self._areas[row], shown_unit("mm")[1]
+            area, scale = self._area(self._row(row)), shown_unit("mm")[1]
             return area is not None and area < limit * scale
-        return self._sought.lower() in data_of(self.widget, row).lower()
+        texts = [data_of(self.widget, row), *(name for _, name in self._row(row))]
+        return any(self._sought.lower() in text.lower() for text in texts)
+
+    @property
+    def marked(self):
+        """The faces of the marked rows."""
+        return tuple(face for index in self.widget.selectedIndexes() for face in index.data(_DATA))
+
+    def mark(self, face):
+        """Mark the row of a face alone, where it is not hidden; the faces of that row, none without one.
+
+        Parameters
+        ----------
+        face : (object, str)
+        """
+        for k in range(self.widget.count()):
+            if _key(face) in map(_key, self._row(k)):
+                self.widget.setCurrentRow(k)
+                return self._row(k)
+        return ()
 
     def remove_marked(self):
-        """Remove the marked entries."""
-        marked = sorted((index.row() for index in self.widget.selectedIndexes()), reverse=True)
-        for row in marked:
-            self.widget.model().removeRow(row)
-            del self._areas[row]
+        """Remove the faces of the marked rows."""
+        marked = set(map(_key, self.marked))
         if marked:
+            self._faces = [face for face in self._faces if _key(face) not in marked]
             self._changed()
 
     def remove_object(self, name):
@@ -128,11 +192,17 @@ class FaceList:
         ----------
         name : str
         """
-        kept = [(thing, sub) for thing, sub in self.faces if thing.Name != name]
-        gone = self.widget.count() - len(kept)
+        kept = [(thing, sub) for thing, sub in self._faces if thing.Name != name]
+        gone = len(self._faces) - len(kept)
         if gone:
             self.faces = kept
         return gone
+
+
+def _key(face):
+    """What a face is known by."""
+    thing, name = face
+    return thing.Document.Name, thing.Name, name
 
 
 def _area_of(thing, name):

@@ -1,5 +1,6 @@
 """The task panel of Plan Orientations: fields, Compute, the map, and OK as one undo step."""
 
+import re
 from contextlib import suppress
 from dataclasses import replace
 
@@ -11,7 +12,7 @@ from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
 from freecad.toolaxis.document.plan_account import account_from
-from freecad.toolaxis.document.read_shapes import titles_of
+from freecad.toolaxis.document.read_shapes import faces_by_number, titles_of
 from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.account import headline
@@ -25,6 +26,7 @@ from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
 from freecad.toolaxis.gui.plan.result_tab import AxisView
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
 from freecad.toolaxis.gui.plan.setup_preview import SetupPreview
+from freecad.toolaxis.gui.plan.skin_search import SkinSearch
 from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
@@ -38,7 +40,7 @@ from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
 from freecad.toolaxis.services.tools import cutter_of
 from freecad.toolaxis.services.write_results import apply
-from PySide import QtCore, QtWidgets
+from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
 
@@ -47,6 +49,8 @@ _TYPED = 0
 #: side: FreeCAD gives a panel whose height depends on its width, as that of a label of several lines does, all the
 #: height it would like, and scrolls it as a whole; a splitter tells no such thing.
 _PAGES = ("jobTab", "setupTab", "toolTab", "advancedTab", "resultTab")
+#: What a stage of the computation says of the face that it is about.
+_FACE = re.compile(r"\b[Ff]ace (\d+)")
 #: Axes that make a map worth showing.
 _ENOUGH = 40
 
@@ -73,6 +77,7 @@ class PlanPanel(Panel):
         self.view = AxisView(self.form, self.preview)
         self.player = PlanPlayer(document, self.form, self.preview)
         self.remedies = RemedyRow(self.form)
+        self.skins, self.numbered, self.lit = SkinSearch(self.form, self.fields.faces), {}, None
         self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed, self.refusal = None, ""
         self.outrun = False
@@ -156,6 +161,7 @@ class PlanPanel(Panel):
         self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
         self.remedies.chosen.connect(self.compute_again)
+        self.skins.found.connect(self._tell_faces)
 
     def _add_faces(self):
         faces, problems = selected_faces(self.document)
@@ -178,9 +184,12 @@ class PlanPanel(Panel):
 
     def _point_out(self):
         """Select in the 3D view what is marked in the list."""
+        self._select(self.fields.faces.marked)
+
+    def _select(self, faces):
+        """Select faces in the 3D view, and nothing else."""
         FreeCADGui.Selection.clearSelection(self.document.Name)
-        for index in self.form.faces.selectedIndexes():
-            thing, name = index.data(QtCore.Qt.UserRole)
+        for thing, name in faces:
             FreeCADGui.Selection.addSelection(self.document.Name, thing.Name, name)
 
     def _tool_chosen(self, index):
@@ -209,14 +218,27 @@ class PlanPanel(Panel):
         if self.work is None:
             self.computed = None
             self.remedies.clear()
+        self.refusal = self.fields.refusal()
+        if self.work is None:
+            self._look_at_fields()
+        self._tell_faces()
+        self.show_state()
+
+    def _look_at_fields(self):
+        """Offer what may help where they are refused, else look for the skins of a rack."""
+        try:
+            inputs = JobInputs(**self.fields.read(), pieces=self._pieces())
+        except ValueError:  # a cell of a table is no length
+            return
+        if self.fields.reason:
+            self.remedies.show_advice(self.fields.reason, inputs)
+        self.skins.seek(None if self.refusal else inputs)
+
+    def _tell_faces(self):
+        """Say how many faces or skins are machined, and of what."""
         told = self.fields.faces.summary()
         self.form.facesTold.setText(told)
         self.form.facesTold.setToolTip(told)
-        self.refusal = self.fields.refusal()
-        if self.work is None and self.fields.reason:
-            with suppress(ValueError):  # a cell of a table is no length
-                self.remedies.show_advice(self.fields.reason, JobInputs(**self.fields.read(), pieces=self._pieces()))
-        self.show_state()
 
     def show_state(self):
         """Enable what can be done now, and say how things stand."""
@@ -279,11 +301,13 @@ class PlanPanel(Panel):
             self.remedies.show_advice(one_line(reason), inputs)
             self.show_state()
             return
-        titles = titles_of(inputs)
+        titles, self.numbered, self.lit = titles_of(inputs), faces_by_number(inputs), None
+        self.skins.pause()
         self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
         known = {} if inputs.rack else titles
         self.work.interim.connect(lambda found: self._growing(*found, known))
         self.work.progressed.connect(self.ongoing.report)
+        self.work.progressed.connect(self._light)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
         self.work.failed.connect(lambda message: self._refused(inputs, message))
         self.work.cancelled.connect(lambda: self._not_computed(""))
@@ -375,13 +399,25 @@ class PlanPanel(Panel):
                 self.form.tabs.setCurrentWidget(self.form.resultTab)
             self.view.show_growing(picture, face, titles)
 
+    def _light(self, stage, _):
+        """Light up in the 3D view, and mark in the list, what is being computed."""
+        number = _FACE.search(stage)
+        face = None if number is None else self.numbered.get(int(number.group(1)))
+        if face is not None and face != self.lit:
+            self.lit = face
+            self._select(self.fields.faces.mark(face))
+
     def _computed(self, inputs, plan, pictures, titles):
         self.work = None
         if not plan.operations:
             self._not_computed("")
             return
         self.computed = None if self.outrun else inputs
+        self.form.faces.clearSelection()
         FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
+        if inputs.rack and plan.outcome != "cancelled":
+            skins = dict.fromkeys(op.face.numbers for op in plan.operations if len(op.face.numbers) > 1)
+            self.skins.show(inputs, [tuple(self.numbered[n] for n in skin) for skin in skins])
         self.view.show(plan, pictures, titles, AxisLocks(inputs, plan))
         self.remedies.show(plan, inputs)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
@@ -396,6 +432,7 @@ class PlanPanel(Panel):
 
     def _not_computed(self, message):
         self.work = None
+        self.form.faces.clearSelection()
         self.problem = message
         if self.view.plan is None:
             self.view.clear()
@@ -445,6 +482,7 @@ class PlanPanel(Panel):
         self.setup_preview.forget()
 
     def _let_go(self):
+        self.skins.leave()
         self.player.close()
         self.view.leave()
         self.preview.clear()
