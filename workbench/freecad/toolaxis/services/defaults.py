@@ -2,24 +2,32 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from math import ceil
 
 from freecad.toolaxis.document.cam_probe import controllers, speeds, tool_from
 from freecad.toolaxis.document.inputs import JobInputs
 from freecad.toolaxis.document.preferences import preferred_inputs
 from freecad.toolaxis.document.read_shapes import number_in
 from freecad.toolaxis.services.obstacles import bodies_beside
+from freecad.toolaxis.services.part_depth import FacesSeen, with_most_area
 from freecad.toolaxis.services.tools import tool_fields
 
 #: Diameters that cutters come in, mm.
 _DIAMETERS = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
-_SCALLOPS = (0.005, 0.01, 0.02, 0.05)
+_SCALLOPS = (0.01, 0.02, 0.05)
 _GRID = 5
+#: Stick-out, in diameters: usual and greatest; steps of it and what stays between holder and part, mm.
+_USUAL, _LONGEST, _STEP, _CLEAR = 5.0, 12.0, 5.0, 2.0
+#: Share of the gap before a face that a cutter may take.
+_GAP = 0.6
 
 
 def defaults(document, faces):
     """Inputs for faces: the first usable tool of a CAM job, else what is preferred, or a bull nose that fits the faces.
 
-    The other bodies of the assembly, or part container, of which they are, are to be avoided.
+    Its diameter follows what most of the area allows, fillets and corners aside, and the gap before the faces; its
+    stick-out follows how deep they lie in the part.  The other bodies of the assembly, or part container, of which they
+    are, are to be avoided.
 
     Parameters
     ----------
@@ -33,7 +41,8 @@ def defaults(document, faces):
     """
     shapes = _faces(faces)
     beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
-    inputs = _apply_preferences(_for_size(JobInputs(tuple(faces), obstacles=tuple(beside)), shapes))
+    seen = FacesSeen.of(shapes, _parts_of(faces, beside))
+    inputs = _apply_preferences(_for_size(JobInputs(tuple(faces), obstacles=tuple(beside)), shapes, seen), seen)
     for controller in controllers(document):
         with suppress(Exception):  # a tool of another kind: the next one
             found = tool_fields(tool_from(controller))
@@ -43,7 +52,18 @@ def defaults(document, faces):
     return inputs
 
 
-def _apply_preferences(inputs):
+def _parts_of(faces, beside):
+    """The shapes of the parts that faces are of, and of the bodies beside them."""
+    from toolaxis.cad.freecad.documents import shape_of
+
+    found = []
+    for thing in dict.fromkeys([*(thing for thing, _ in faces), *beside]):
+        with suppress(Exception):  # it is refused with the reason when it is computed with
+            found.append(shape_of(thing))
+    return found
+
+
+def _apply_preferences(inputs, seen):
     """What the user prefers in place of what the part suggests; a tool that is none is left out."""
     from toolaxis.errors import InvalidInput
     from toolaxis.tools.tool import Tool
@@ -55,7 +75,7 @@ def _apply_preferences(inputs):
         except InvalidInput:
             del found["tool"]
         else:
-            found |= {"stickout": 5 * diameter, "holder": _holder(diameter)}
+            found |= {"stickout": _stickout(diameter, seen), "holder": _holder(diameter)}
     return replace(inputs, **found)
 
 
@@ -71,17 +91,26 @@ def _faces(faces):
     return found
 
 
-def _for_size(inputs, faces):
-    """Diameter by the size of the smallest face and its tightest hollow, everything else by the diameter."""
+def _for_size(inputs, faces, seen):
+    """Diameter by the size of the faces, their tightest hollows and what stands before them; the rest by that."""
     if not faces:
         return replace(inputs, holder=_holder(12.0))
-    size = min(face.Area for face in faces) ** 0.5
-    room = min(size / 4, *(1.6 / bend for bend in map(_hollow, faces) if bend > 0), 20.0)
+    sizes = [area**0.5 for area in seen.areas]
+    rooms = [min(size / 4, *(1.6 / bend for bend in [_hollow(face)] if bend > 0), 20.0)
+             for size, face in zip(sizes, faces, strict=True)]
+    room = min(with_most_area(rooms, seen.areas, high=False), _GAP * seen.gap)
     diameter = max((one for one in _DIAMETERS if one <= room), default=_DIAMETERS[0])
     corner = max(0.5, round(diameter / 6 * 2) / 2)
+    size = with_most_area(sizes, seen.areas, high=False)
     scallop = max((one for one in _SCALLOPS if one <= size / 1500), default=_SCALLOPS[0])
-    return replace(inputs, tool=f"torus:{diameter:g}x{corner:g}", stickout=5 * diameter, holder=_holder(diameter),
-                   scallop=scallop)
+    return replace(inputs, tool=f"torus:{diameter:g}x{corner:g}", stickout=_stickout(diameter, seen),
+                   holder=_holder(diameter), scallop=scallop)
+
+
+def _stickout(diameter, seen):
+    """Five diameters, or as much more as keeps the holder above the part, mm."""
+    needed = _STEP * ceil((seen.depth(diameter / 2, _holder(diameter)[0][0]) + _CLEAR) / _STEP)
+    return max(_USUAL * diameter, min(needed, _LONGEST * diameter))
 
 
 def _holder(diameter):
