@@ -7,7 +7,8 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.plan.orientation import REASONS, AxisMap, Orientation
-from toolaxis.plan.remedies import Remedy, remedies_advised, remedies_of
+from toolaxis.plan.remedies import _COUNTED, Remedy, remedies_advised, remedies_of
+from toolaxis.search.messages import COUNTED
 
 HOLDER = [(20.0, 0.0), (20.0, 40.0)]
 
@@ -90,6 +91,18 @@ def test_a_face_whose_normals_spread_too_far_is_offered_to_be_divided(plan) -> N
     lost = replace(lost, operations=(replace(op, orientation=replace(op.orientation, map=None)),))
     assert remedies_of(lost) == (Remedy("regions", "auto", 1.0),)
     assert remedies_of(lost, divided=True) == ()
+
+
+def test_an_operation_without_a_map_is_known_by_what_its_sentences_count(plan) -> None:
+    """Found: a division was offered for the rest of a face that nearly all axes gouge."""
+    assert [told.startswith(words) for told, words in zip(COUNTED, _COUNTED, strict=True)] == [True] * len(REASONS)
+    told = "1394 axes tested: 132 outside the limits, 61 too far from a normal, 1201 with a gouge"
+    bare = replace(plan.operations[0].orientation, axis=None, outcome="not_found", map=None, reasons=(told,))
+    lost = replace(plan, operations=(replace(plan.operations[0], path=None, orientation=bare),))
+    assert [(one.name, one.value) for one in remedies_of(lost)] == [("tool", "ball:8")]
+    none = replace(bare, reasons=("no single axis reaches all of face 1",))
+    lost = replace(plan, operations=(replace(plan.operations[0], path=None, orientation=none),))
+    assert [one.name for one in remedies_of(lost)] == ["regions"]
 
 
 ADVICE = (

@@ -35,6 +35,9 @@ _ADVICE = (("larger machining tolerance", "tolerance"), ("smaller corner radius"
            ("larger scallop height", "coarser"), ("greater scallop height", "coarser"),
            ("coarser --scallop", "coarser"), ("smaller scallop height", "finer"), ("divide the face", "divide"))
 _OUT = re.compile(r"stands ([0-9.]+) mm out")
+#: How a sentence on an operation without a map counts axes, in the order of `toolaxis.plan.orientation.REASONS`.
+_COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal", "with a gouge",
+            "with a collision of the cutter", "with a collision of the shank", "with a collision of the holder")
 
 
 @dataclass(frozen=True)
@@ -81,8 +84,7 @@ def _by_maps(plan: Plan, lost: Sequence[Operation], divided: bool) -> list[Remed
     """Remedies for what forbids most axes."""
     counts = np.zeros(_HOLDER + 1)
     for op in lost:
-        if op.orientation.map is not None:
-            counts += np.bincount(op.orientation.map.reason, minlength=len(counts))[:len(counts)]
+        counts += _counts_of(op)
     bare = [op for op in lost if op.orientation.map is None]
     whole = float(counts[1:].sum())
     shares = counts / whole if whole else counts
@@ -96,6 +98,16 @@ def _by_maps(plan: Plan, lost: Sequence[Operation], divided: bool) -> list[Remed
     if plan.inputs.limits:  # those of a machine are no choice
         found.append(Remedy("limits", "", float(shares[_LIMITS])))
     return [one for one in found if one.share >= _WORTH]
+
+
+def _counts_of(op: Operation) -> Array:
+    """How many axes are forbidden for each reason: by the map, else by the sentences."""
+    found = op.orientation.map
+    if found is not None:
+        return np.bincount(found.reason, minlength=len(_COUNTED))[:len(_COUNTED)].astype(float)
+    text = " ".join(why for why in op.orientation.reasons if "axes tested" in why)
+    rows = [re.findall(rf"([0-9]+) {words}", text) for words in _COUNTED]
+    return np.array([sum(map(float, row)) for row in rows])
 
 
 def remedies_advised(sentences: Iterable[str], tool: Tool, heights: tuple[float, float],
