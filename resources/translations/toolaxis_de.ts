@@ -307,6 +307,10 @@
    <translation>Keine Kollisionen gefunden.</translation>
   </message>
   <message>
+   <source>No map was kept of the axes that were looked at: the reasons stand below.</source>
+   <translation>Von den betrachteten Achsen wurde keine Karte behalten: die Gründe stehen darunter.</translation>
+  </message>
+  <message>
    <source>No map: no axis was looked at.</source>
    <translation>Keine Karte: Es wurde keine Achse betrachtet.</translation>
   </message>

@@ -257,6 +257,25 @@ def test_a_refused_value_and_a_failed_computation_have_their_remedy_beside_them(
     assert "Every face has an axis" in form.message.text() and not form.remedy1.isVisible()
 
 
+def test_passes_are_drawn_beside_an_operation_without_an_axis(desk, form, remembered):
+    """Found: with one of two sub-surfaces machined the view stayed empty, since the other one is shown first."""
+    form.limits.setCurrentIndex(1)
+    form.limitZ.setValue(1.0)
+    form.tabs.setCurrentWidget(form.toolTab)
+    sizes = (form.diameter, "40 mm"), (form.corner, "6 mm"), (form.stickout, "60 mm"), (form.cone, "3 deg")
+    for field, text in sizes:
+        desk.type(field, text)
+    form.tabs.setCurrentWidget(form.jobTab)
+    desk.type(form.scallop, "0.01 mm")
+    desk.computed(form)
+    preview = desk.opened[-1]().preview
+    assert "1 of 2 faces" in form.message.text() and form.operation.currentText().endswith("no axis")
+    desk.wait(lambda: not preview._left, "all is drawn")
+    assert preview.root is None and preview._others.getNumChildren() == 2, "the passes of the other"
+    assert "reasons stand below" in form.findChild(desk.widgets.QWidget, "axisMap").reason
+    desk.shot("13-one-of-two")
+
+
 TYPED = (("0.1", "0.10 mm"), ("0,1", "0.10 mm"), (".02", "0.02 mm"), ("20 um", "0.02 mm"), ("1/8 in", "3.175 mm"),
          ("0.1 kg", "0.02 mm"), ("nonsense", "0.02 mm"), ("", "0.02 mm"))
 

@@ -25,6 +25,8 @@ def no_map(found):
     """
     if found.lead is not None:
         return translate("ToolAxis", "No map: the axis moves along the passes.")
+    if found.axis is None and any("axes tested" in why for why in found.reasons):
+        return translate("ToolAxis", "No map was kept of the axes that were looked at: the reasons stand below.")
     if found.axis is None:
         return translate("ToolAxis", "No map: no axis was looked at.")
     return translate("ToolAxis", "No map: this axis was not looked for by itself. It is shared by sub-surfaces, "

@@ -91,7 +91,7 @@ class Preview:
         self._others.addChild(style)
         view.getSceneGraph().addChild(self._others)
         done = [op for op in plan.operations if op.done]
-        if len(done) > 1:
+        if len(plan.operations) > 1:  # also one alone: what is shown may be one without an axis
             self._left += [(self._others, partial(_cuts, op.path, _colour_of(plan, op), _THIN)) for op in done]
 
     def _grow(self):
