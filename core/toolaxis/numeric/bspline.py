@@ -11,18 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import jit, jit_fma, jit_fma_inline
+from toolaxis.numeric.jit import jit, jit_fma, jit_uncounted, jit_uncounted_inline
+from toolaxis.numeric.lanes import Lanes, add_scaled, lane, load_lanes, no_lanes, scale, shrink
 
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]
 Four: TypeAlias = tuple[float, float, float, float]
 Six: TypeAlias = tuple[float, float, float, float, float, float]
+SixLanes: TypeAlias = tuple[Lanes, Lanes, Lanes, Lanes, Lanes, Lanes]
 
 MAX_DEGREE = 25
 WORK_SHAPE = (6, MAX_DEGREE + 1)
+#: Knots up to which counting those below a parameter is faster than halving their range.
+_COUNTED = 16
 
 
-@jit_fma_inline
+@jit_uncounted_inline
 def find_span(knots: Array, degree: int, t: float) -> int:
     """Index i with knots[i] <= t < knots[i + 1], the last non-empty span at the upper end.
 
@@ -30,10 +34,14 @@ def find_span(knots: Array, degree: int, t: float) -> int:
     """
     low = degree
     size: int = knots.shape[0] - 2 * degree - 1
-    while size > 1:
+    while size > _COUNTED:
         half = size >> 1
         low = low + half if knots[low + half] <= t else low
         size -= half
+    below = 0
+    for k in range(low + 1, low + size):
+        below += knots[k] <= t
+    low += below
     while low > degree and knots[low] >= knots[low + 1]:
         low -= 1
     return low
@@ -48,7 +56,7 @@ def basis_derivatives(knots: Array, degree: int, span: int, t: float, rows: Arra
     _basis(knots, (degree, span), t, rows, 0)
 
 
-@jit_fma_inline
+@jit_uncounted_inline
 def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int) -> None:
     """The same into rows[at:at+3]; a slice there would count references in the hot loop.
 
@@ -81,7 +89,7 @@ def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int)
             rows[at + 2, d] = d * previous
 
 
-@jit_fma_inline
+@jit_uncounted_inline
 def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
     """The recursion of `basis_derivatives` written out for degree 3, with six divisions."""
     a, b, c = knots[span - 2], knots[span - 1], knots[span]
@@ -100,7 +108,7 @@ def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
     rows[at + 2, 0], rows[at + 2, 1], rows[at + 2, 2], rows[at + 2, 3] = -x, x - y, y - z, z
 
 
-@jit
+@jit_uncounted
 def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work: Array) -> None:
     """S, Su, Sv, Suu, Suv, Svv at one (u, v).
 
@@ -117,24 +125,40 @@ def surface_derivatives(data: SurfaceData, u: float, v: float, out: Array, work:
     work : (6, 26) array
         Scratch.
     """
-    knots_u, knots_v, control, pu, pv, rational = data
-    uc = _clamp_parameter(knots_u, pu, u)
-    vc = _clamp_parameter(knots_v, pv, v)
+    if data[3] == 3 and data[4] == 3:  # with degrees known to the compiler there are no loops left
+        _fill_derivatives(data, (3, 3), u, v, out, work)
+    else:
+        _fill_derivatives(data, (data[3], data[4]), u, v, out, work)
+
+
+@jit_uncounted
+def any_derivatives(data: SurfaceData, u: float, v: float, out: Array, work: Array) -> None:
+    """The same, by loops over the degrees."""
+    _fill_derivatives(data, (data[3], data[4]), u, v, out, work)
+
+
+@jit_uncounted_inline
+def _fill_derivatives(data: SurfaceData, degree: tuple[int, int], u: float, v: float, out: Array, work: Array) -> None:
+    knots_u, knots_v, control, _, _, rational = data
+    pu, pv = degree
+    uc = clamp_parameter(knots_u, pu, u)
+    vc = clamp_parameter(knots_v, pv, v)
     span_u = find_span(knots_u, pu, uc)
     span_v = find_span(knots_v, pv, vc)
     _basis(knots_u, (pu, span_u), uc, work, 0)
     _basis(knots_v, (pv, span_v), vc, work, 3)
-    _patch(control, (span_u - pu, span_v - pv), (pu, pv), work, out)
+    six = _patch(control, (span_u - pu, span_v - pv), (pu, pv), work)
     weights = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if rational:
-        weights = _weights(control, (span_u - pu, span_v - pv), (pu, pv), work)
-        _divide(weights, out)
+        weights = weights_of(six)
+        six = divide_six(six)
     if u != uc or v != vc:
         thirds = _thirds(control, (span_u - pu, span_v - pv), (pu, pv), work)
-        _extend((u - uc, v - vc), weights, thirds, out)
+        six = extend_six((u - uc, v - vc), weights, thirds, six)
+    store_six(six, out)
 
 
-@jit_fma_inline
+@jit_uncounted_inline
 def surface_point(data: SurfaceData, u: float, v: float, work: Array) -> tuple[float, float, float]:
     """S at one (u, v), at the nearest parameters of the domain; for searches that ask for nothing else.
 
@@ -147,7 +171,7 @@ def surface_point(data: SurfaceData, u: float, v: float, work: Array) -> tuple[f
         Scratch.
     """
     knots_u, knots_v, control, pu, pv, rational = data
-    uc, vc = _clamp_parameter(knots_u, pu, u), _clamp_parameter(knots_v, pv, v)
+    uc, vc = clamp_parameter(knots_u, pu, u), clamp_parameter(knots_v, pv, v)
     span_u, span_v = find_span(knots_u, pu, uc), find_span(knots_v, pv, vc)
     _basis(knots_u, (pu, span_u), uc, work, 0)
     _basis(knots_v, (pv, span_v), vc, work, 3)
@@ -165,8 +189,8 @@ def surface_point(data: SurfaceData, u: float, v: float, work: Array) -> tuple[f
     return x * share, y * share, z * share
 
 
-@jit_fma_inline
-def _clamp_parameter(knots: Array, degree: int, t: float) -> float:
+@jit_uncounted_inline
+def clamp_parameter(knots: Array, degree: int, t: float) -> float:
     """The nearest parameter in the domain; NaN stays NaN."""
     if t < knots[degree]:
         return float(knots[degree])
@@ -175,95 +199,87 @@ def _clamp_parameter(knots: Array, degree: int, t: float) -> float:
     return t
 
 
-@jit_fma_inline
-def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array, out: Array) -> None:
-    """Contract the first three homogeneous coordinates; every sum is kept in a register."""
+@jit_uncounted_inline
+def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> SixLanes:
+    """The six vectors of the homogeneous coordinates."""
     (i0, j0), (pu, pv) = first, degree
-    s0 = s1 = s2 = su0 = su1 = su2 = sv0 = sv1 = sv2 = 0.0
-    suu0 = suu1 = suu2 = suv0 = suv1 = suv2 = svv0 = svv1 = svv2 = 0.0
+    s = su = sv = suu = suv = svv = no_lanes()
     for i in range(pu + 1):
-        a0 = a1 = a2 = b0 = b1 = b2 = c0 = c1 = c2 = 0.0
+        a = b = c = no_lanes()
         for j in range(pv + 1):
-            x, y, z = control[i0 + i, j0 + j, 0], control[i0 + i, j0 + j, 1], control[i0 + i, j0 + j, 2]
-            p, q, r = work[3, j], work[4, j], work[5, j]
-            a0, a1, a2 = a0 + p * x, a1 + p * y, a2 + p * z
-            b0, b1, b2 = b0 + q * x, b1 + q * y, b2 + q * z
-            c0, c1, c2 = c0 + r * x, c1 + r * y, c2 + r * z
+            point = load_lanes(control, i0 + i, j0 + j)
+            a, b, c = (add_scaled(a, work[3, j], point), add_scaled(b, work[4, j], point),
+                       add_scaled(c, work[5, j], point))
         p, q, r = work[0, i], work[1, i], work[2, i]
-        s0, s1, s2 = s0 + p * a0, s1 + p * a1, s2 + p * a2
-        su0, su1, su2 = su0 + q * a0, su1 + q * a1, su2 + q * a2
-        sv0, sv1, sv2 = sv0 + p * b0, sv1 + p * b1, sv2 + p * b2
-        suu0, suu1, suu2 = suu0 + r * a0, suu1 + r * a1, suu2 + r * a2
-        suv0, suv1, suv2 = suv0 + q * b0, suv1 + q * b1, suv2 + q * b2
-        svv0, svv1, svv2 = svv0 + p * c0, svv1 + p * c1, svv2 + p * c2
-    out[0, 0], out[0, 1], out[0, 2] = s0, s1, s2
-    out[1, 0], out[1, 1], out[1, 2] = su0, su1, su2
-    out[2, 0], out[2, 1], out[2, 2] = sv0, sv1, sv2
-    out[3, 0], out[3, 1], out[3, 2] = suu0, suu1, suu2
-    out[4, 0], out[4, 1], out[4, 2] = suv0, suv1, suv2
-    out[5, 0], out[5, 1], out[5, 2] = svv0, svv1, svv2
+        s, su, sv = add_scaled(s, p, a), add_scaled(su, q, a), add_scaled(sv, p, b)
+        suu, suv, svv = add_scaled(suu, r, a), add_scaled(suv, q, b), add_scaled(svv, p, c)
+    return s, su, sv, suu, suv, svv
 
 
-@jit_fma_inline
-def _weights(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> Six:
+@jit_uncounted_inline
+def weights_of(six: SixLanes) -> Six:
     """The weight and its five derivatives."""
-    (i0, j0), (pu, pv) = first, degree
-    w = wu = wv = wuu = wuv = wvv = 0.0
-    for i in range(pu + 1):
-        a = b = c = 0.0
-        for j in range(pv + 1):
-            x = control[i0 + i, j0 + j, 3]
-            a, b, c = a + work[3, j] * x, b + work[4, j] * x, c + work[5, j] * x
-        p, q, r = work[0, i], work[1, i], work[2, i]
-        w, wu, wv = w + p * a, wu + q * a, wv + p * b
-        wuu, wuv, wvv = wuu + r * a, wuv + q * b, wvv + p * c
-    return w, wu, wv, wuu, wuv, wvv
+    return lane(six[0], 3), lane(six[1], 3), lane(six[2], 3), lane(six[3], 3), lane(six[4], 3), lane(six[5], 3)
 
 
-@jit_fma_inline
-def _divide(weights: Six, out: Array) -> None:
-    w, wu, wv, wuu, wuv, wvv = weights
+@jit_uncounted_inline
+def divide_six(six: SixLanes) -> SixLanes:
+    """The six vectors of a quotient, from those of its parts."""
+    w, wu, wv, wuu, wuv, wvv = weights_of(six)
     share = 1.0 / w
-    for c in range(3):
-        s = out[0, c] * share
-        su = (out[1, c] - wu * s) * share
-        sv = (out[2, c] - wv * s) * share
-        out[3, c] = (out[3, c] - 2.0 * wu * su - wuu * s) * share
-        out[4, c] = (out[4, c] - wu * sv - wv * su - wuv * s) * share
-        out[5, c] = (out[5, c] - 2.0 * wv * sv - wvv * s) * share
-        out[0, c] = s
-        out[1, c] = su
-        out[2, c] = sv
+    s = scale(share, six[0])
+    su = scale(share, add_scaled(six[1], -wu, s))
+    sv = scale(share, add_scaled(six[2], -wv, s))
+    suu = scale(share, add_scaled(add_scaled(six[3], -2.0 * wu, su), -wuu, s))
+    suv = scale(share, add_scaled(add_scaled(add_scaled(six[4], -wu, sv), -wv, su), -wuv, s))
+    svv = scale(share, add_scaled(add_scaled(six[5], -2.0 * wv, sv), -wvv, s))
+    return s, su, sv, suu, suv, svv
 
 
-@jit_fma_inline
-def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> tuple[Four, Four]:
-    """The mixed third derivatives uuv and uvv of the four homogeneous coordinates."""
+@jit_uncounted_inline
+def store_six(six: SixLanes, out: Array) -> None:
+    """The six vectors into a (6, 3) array."""
+    s, su, sv, suu, suv, svv = six
+    out[0, 0], out[0, 1], out[0, 2] = lane(s, 0), lane(s, 1), lane(s, 2)
+    out[1, 0], out[1, 1], out[1, 2] = lane(su, 0), lane(su, 1), lane(su, 2)
+    out[2, 0], out[2, 1], out[2, 2] = lane(sv, 0), lane(sv, 1), lane(sv, 2)
+    out[3, 0], out[3, 1], out[3, 2] = lane(suu, 0), lane(suu, 1), lane(suu, 2)
+    out[4, 0], out[4, 1], out[4, 2] = lane(suv, 0), lane(suv, 1), lane(suv, 2)
+    out[5, 0], out[5, 1], out[5, 2] = lane(svv, 0), lane(svv, 1), lane(svv, 2)
+
+
+@jit_uncounted_inline
+def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> tuple[Lanes, Lanes]:
+    """The mixed third derivatives uuv and uvv of the homogeneous coordinates."""
     (i0, j0), (pu, pv) = first, degree
-    x = y = z = w = x2 = y2 = z2 = w2 = 0.0
+    uuv = uvv = no_lanes()
     for i in range(pu + 1):
         for j in range(pv + 1):
-            p, q = work[2, i] * work[4, j], work[1, i] * work[5, j]
-            a, b = control[i0 + i, j0 + j, 0], control[i0 + i, j0 + j, 1]
-            c, d = control[i0 + i, j0 + j, 2], control[i0 + i, j0 + j, 3]
-            x, y, z, w = x + p * a, y + p * b, z + p * c, w + p * d
-            x2, y2, z2, w2 = x2 + q * a, y2 + q * b, z2 + q * c, w2 + q * d
-    return (x, y, z, w), (x2, y2, z2, w2)
+            point = load_lanes(control, i0 + i, j0 + j)
+            uuv = add_scaled(uuv, work[2, i] * work[4, j], point)
+            uvv = add_scaled(uvv, work[1, i] * work[5, j], point)
+    return uuv, uvv
 
 
-@jit_fma_inline
-def _extend(beyond: tuple[float, float], weights: Six, thirds: tuple[Four, Four], out: Array) -> None:
-    """Carry the six vectors of the border on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
-    (du, dv), (w, wu, wv, wuu, wuv, wvv), (uuv, uvv) = beyond, weights, thirds
-    for c in range(3):
-        s, su, sv, suu, suv, svv = out[0, c], out[1, c], out[2, c], out[3, c], out[4, c], out[5, c]
-        suuv = (uuv[c] - wv * suu - 2.0 * (wu * suv + wuv * su) - wuu * sv - uuv[3] * s) / w
-        suvv = (uvv[c] - wu * svv - 2.0 * (wv * suv + wuv * sv) - wvv * su - uvv[3] * s) / w
-        out[0, c] = s + du * su + dv * sv + du * dv * suv
-        out[1, c] = su + dv * suv
-        out[2, c] = sv + du * suv
-        out[3, c] = suu + dv * suuv if du == 0.0 else 0.0 * du
-        out[5, c] = svv + du * suvv if dv == 0.0 else 0.0 * dv
+@jit_uncounted_inline
+def extend_six(beyond: tuple[float, float], weights: Six, thirds: tuple[Lanes, Lanes], six: SixLanes) -> SixLanes:
+    """The six vectors of the border carried on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
+    (du, dv), (w, wu, wv, wuu, wuv, wvv), (s, su, sv, suu, suv, svv) = beyond, weights, six
+    uuv, uvv = thirds
+    whole = add_scaled(add_scaled(add_scaled(s, du, su), dv, sv), du * dv, suv)
+    if du == 0.0:
+        both = add_scaled(scale(wuv, su), wu, suv)
+        part = add_scaled(add_scaled(uuv, -wv, suu), -2.0, both)
+        suu = add_scaled(suu, dv, shrink(w, add_scaled(add_scaled(part, -wuu, sv), -lane(uuv, 3), s)))
+    else:
+        suu = scale(0.0 * du, no_lanes())
+    if dv == 0.0:
+        both = add_scaled(scale(wuv, sv), wv, suv)
+        part = add_scaled(add_scaled(uvv, -wu, svv), -2.0, both)
+        svv = add_scaled(svv, du, shrink(w, add_scaled(add_scaled(part, -wvv, su), -lane(uvv, 3), s)))
+    else:
+        svv = scale(0.0 * dv, no_lanes())
+    return whole, add_scaled(su, dv, suv), add_scaled(sv, du, suv), suu, suv, svv
 
 
 @jit
@@ -283,14 +299,15 @@ def _many_cubic(data: SurfaceData, uv: Array, out: Array) -> bool:
     work = np.empty((6, 26))
     inside = True
     for k in range(uv.shape[0]):
-        u, v = _clamp_parameter(knots_u, 3, uv[k, 0]), _clamp_parameter(knots_v, 3, uv[k, 1])
+        u, v = clamp_parameter(knots_u, 3, uv[k, 0]), clamp_parameter(knots_v, 3, uv[k, 1])
         inside = inside and u == uv[k, 0] and v == uv[k, 1]
         span_u, span_v = find_span(knots_u, 3, u), find_span(knots_v, 3, v)
         _cubic(knots_u, span_u, u, work, 0)
         _cubic(knots_v, span_v, v, work, 3)
-        _patch(control, (span_u - 3, span_v - 3), (3, 3), work, out[k])
+        six = _patch(control, (span_u - 3, span_v - 3), (3, 3), work)
         if rational:
-            _divide(_weights(control, (span_u - 3, span_v - 3), (3, 3), work), out[k])
+            six = divide_six(six)
+        store_six(six, out[k])
     return inside
 
 

@@ -278,3 +278,82 @@ borrowed = _borrowed()
 """Inside kernels: a view of an array that nobody counts.  Handing an array to a built-in kernel costs an atomic count,
 up and down; handing on a borrowed one costs nothing.  The array must outlive the view: borrow only what the caller
 holds, since an array made in the kernel is freed after its own last use, whatever its views do."""
+
+
+def _compile_lanes() -> tuple[Callable[..., Any], ...]:
+    """What `toolaxis.numeric.lanes` tells of, as parts of compiled code."""
+    if _numba is None or _numba.config.DISABLE_JIT:
+        return ()
+    from llvmlite import ir
+    from numba.core import cgutils, types
+    from numba.extending import intrinsic, models, register_model
+
+    class LanesType(types.Type):
+        pass
+
+    pointer: Any = cgutils.get_item_pointer
+    kind, four, index = LanesType("Lanes"), ir.VectorType(ir.DoubleType(), 4), ir.IntType(32)
+    register_model(LanesType)(functools.partial(models.PrimitiveModel, be_type=four))
+
+    def spread(builder: Any, number: Any) -> Any:
+        undefined = ir.Constant(four, ir.Undefined)
+        first = builder.insert_element(undefined, number, index(0))
+        return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(index, 4), [0] * 4))
+
+    @intrinsic
+    def no_lanes(context: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return ir.Constant(four, [0.0] * 4)
+
+        return kind(), generate
+
+    @intrinsic
+    def load_lanes(context: Any, table: Any, i: Any, j: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            array = target.make_array(table)(target, builder, value=arguments[0])
+            places = [[*arguments[1:], target.get_constant(types.intp, k)] for k in range(4)]
+            each = [pointer(target, builder, table, array, place, wraparound=False) for place in places]
+            if table.layout == "C":
+                return builder.load(builder.bitcast(each[0], four.as_pointer()), align=8)
+            lanes = ir.Constant(four, ir.Undefined)
+            for k in range(4):
+                lanes = builder.insert_element(lanes, builder.load(each[k]), index(k))
+            return lanes
+
+        return kind(table, types.intp, types.intp), generate
+
+    @intrinsic
+    def add_scaled(context: Any, total: Any, share: Any, lanes: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            total, share, lanes = arguments
+            product = builder.fmul(spread(builder, share), lanes, flags=("contract",))
+            return builder.fadd(total, product, flags=("contract",))
+
+        return kind(kind, types.float64, kind), generate
+
+    @intrinsic
+    def scale(context: Any, share: Any, lanes: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.fmul(spread(builder, arguments[0]), arguments[1])
+
+        return kind(types.float64, kind), generate
+
+    @intrinsic
+    def shrink(context: Any, share: Any, lanes: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.fdiv(arguments[1], spread(builder, arguments[0]))
+
+        return kind(types.float64, kind), generate
+
+    @intrinsic
+    def lane(context: Any, lanes: Any, k: Any) -> Any:
+        def generate(target: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.extract_element(arguments[0], arguments[1])
+
+        return types.float64(kind, types.intp), generate
+
+    return no_lanes, load_lanes, add_scaled, scale, shrink, lane
+
+
+lane_parts = _compile_lanes()
+"""The functions of `toolaxis.numeric.lanes` for kernels; none where the source runs."""

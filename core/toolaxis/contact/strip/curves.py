@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.bspline import WORK_SHAPE, SurfaceData, surface_derivatives
+from toolaxis.numeric.bicubic import SurfaceWalk, new_walk, walk_derivatives, walk_slopes
+from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, combine, cross, dot, plus
 
@@ -26,10 +27,10 @@ _PARALLEL = 1e-10
 
 
 class Scratch(NamedTuple):
-    """Working memory of `surface_derivatives`: the six vectors (6, 3), and its own (6, 26)."""
+    """Working memory for places of one surface: the six vectors (6, 3), and that of `walk_derivatives`."""
 
     vectors: Array
-    basis: Array
+    walk: SurfaceWalk
 
 
 class SectionNodes(NamedTuple):
@@ -80,7 +81,7 @@ class Moving(NamedTuple):
 
 def new_scratch() -> Scratch:
     """Working memory for evaluating curves."""
-    return Scratch(np.empty((6, 3)), np.empty(WORK_SHAPE))
+    return Scratch(np.empty((6, 3)), new_walk())
 
 
 def new_section_nodes() -> SectionNodes:
@@ -103,7 +104,7 @@ def curve_point(surface: OrientedSurface, curve: SurfaceCurve, w: float, scratch
         else:
             v += w
             du, dv = 0.0, 1.0
-        surface_derivatives(surface.data, u, v, scratch.vectors, scratch.basis)
+    walk_derivatives(surface.data, u, v, scratch.vectors, scratch.walk)
     d = scratch.vectors
     su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
     suv = (d[4, 0], d[4, 1], d[4, 2])
@@ -186,9 +187,10 @@ def _section_parameters(surface: SurfaceData, curve: SurfaceCurve, w: float,
         tangent = (nodes.points[row, 3], nodes.points[row, 4], nodes.points[row, 5])
         u = nodes.parameters[row, 0] + t * nodes.parameters[row, 2]
         v = nodes.parameters[row, 1] + t * nodes.parameters[row, 3]
-        su = sv = tangent
+        su, sv, u_at, v_at = tangent, tangent, u, v
         for _ in range(12):
-            surface_derivatives(surface, u, v, d, scratch.basis)
+            u_at, v_at = u, v
+            walk_slopes(surface, u, v, d, scratch.walk)
             su, sv = (d[1, 0], d[1, 1], d[1, 2]), (d[2, 0], d[2, 1], d[2, 2])
             apart = plus((d[0, 0], d[0, 1], d[0, 2]), origin, -1.0)
             off, beside = dot(apart, tangent) - t, dot(apart, plane)
@@ -200,7 +202,7 @@ def _section_parameters(surface: SurfaceData, curve: SurfaceCurve, w: float,
             v -= (a * beside - p * off) / det
         if k == last:
             du, dv = _rates_along(su, sv, tangent, plane)
-            return u, v, du, dv
+            return u_at, v_at, du, dv
         k += 1
         _store_node(curve, _NODES + side * k, (u, v), tangent, scratch)
         nodes.found[way] = k
