@@ -23,7 +23,15 @@ from toolaxis.contact.strip.curves import (
 )
 from toolaxis.contact.strip.cutter_parameters import CAP, CutterParameters
 from toolaxis.contact.strip.march import WINDOW, PassTips, exit_by_marching, new_pass_tips
-from toolaxis.contact.strip.newton import BOTTOM, CutterSweep, is_first_exit, solve_exit
+from toolaxis.contact.strip.newton import (
+    BOTTOM,
+    CutterSweep,
+    NodeTips,
+    is_first_exit,
+    new_node_tips,
+    place_node_tips,
+    solve_exit,
+)
 from toolaxis.contact.strip.second_order import Form, compliance, surface_form
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, cross, dot, plus
@@ -69,6 +77,7 @@ class Workspace(NamedTuple):
     cross_section: SectionNodes
     feed_nodes: CurveNodes
     cross_nodes: CurveNodes
+    node_tips: NodeTips
     tips: PassTips
     guesses: Array
     """Half width, and advance along the feed per mm to the left, for each axis."""
@@ -92,10 +101,10 @@ class ContactFrame(NamedTuple):
 def new_workspace(axes: int) -> Workspace:
     """Memory for a number of axes."""
     return Workspace(new_scratch(), new_section_nodes(), new_section_nodes(), new_curve_nodes(), new_curve_nodes(),
-                     new_pass_tips(), np.empty((axes, 2)))
+                     new_node_tips(), new_pass_tips(), np.empty((axes, 2)))
 
 
-@jit_uncounted
+@jit_uncounted_inline
 def _frame_at(surface: OrientedSurface, curve: SurfaceCurve, direction: Triple, options: StripOptions,
               scratch: Scratch) -> tuple[bool, ContactFrame]:
     """The frame at the contact of an iso-curve, which is the pass unless this follows a direction.
@@ -120,7 +129,7 @@ def _frame_at(surface: OrientedSurface, curve: SurfaceCurve, direction: Triple, 
     return valid, ContactFrame(feed, left, at.normal, form, pace, cross_feed, cross_left)
 
 
-@jit_uncounted
+@jit_uncounted_inline
 def _sweep_at(surface: OrientedSurface, cutter: CutterParameters, uv: tuple[float, float], frame: ContactFrame,
               heights: tuple[float, float], options: StripOptions, work: Workspace) -> CutterSweep:
     """Pass and cross curve of a contact, whose vectors the scratch holds, with tables that reach beyond a guess.
@@ -176,9 +185,9 @@ def _exit_on_side(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], 
     """
     if guess[0] != 0.0:
         for part in range(BOTTOM + 1 if sweep.cutter.flat > 0.0 else BOTTOM):
-            found = solve_exit(sweep, axis, guess, part, work.scratch)
+            found = solve_exit(sweep, axis, guess, part, work.node_tips, work.scratch)
             if found.found:
-                if is_first_exit(sweep, axis, found):
+                if is_first_exit(sweep, axis, found, work.node_tips):
                     return found.s, 0
                 break
     if stride == 0.0:
@@ -234,6 +243,8 @@ def half_widths(surface: OrientedSurface, cutter: CutterParameters, contacts: St
                 stride = 0.0
             s = width / abs(frame.cross_left) if width > 0.0 and options.newton else 0.0
             w = s * (frame.cross_feed + work.guesses[i, 1] * frame.cross_left) / frame.pace
+            if s != 0.0:
+                place_node_tips(sweep, axis, work.node_tips)
             for side in range(2):
                 sign = 2.0 * side - 1.0
                 s_exit, taken = _exit_on_side(sweep, axis, (sign * s, sign * w), sign * stride, work)

@@ -7,16 +7,26 @@ exit is taken only where it is the first one and not covered from elsewhere on t
 from math import inf, sqrt
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from toolaxis.contact.strip.curve_tables import (
     MIDDLE,
-    CurveNodes,
     TabulatedCurve,
     find_interval,
     interpolate,
     tip_at_node,
     tip_between_nodes,
 )
-from toolaxis.contact.strip.curves import Moving, OrientedSurface, Scratch, curve_point, offset_point, read_moving
+from toolaxis.contact.strip.curves import (
+    Moving,
+    OrientedSurface,
+    Scratch,
+    curve_point,
+    offset_point,
+    read_moving,
+    store_moving,
+)
 from toolaxis.contact.strip.cutter_parameters import CutterParameters
 from toolaxis.contact.strip.swept_cutter import (
     RelativeMotion,
@@ -27,6 +37,8 @@ from toolaxis.contact.strip.swept_cutter import (
 )
 from toolaxis.numeric.jit import jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, dot, plus
+
+Array = NDArray[np.float64]
 
 #: Parts of the cutter through which the exit may lie.
 ARC, SIDE, BOTTOM = 0, 1, 2
@@ -50,6 +62,15 @@ class CutterSweep(NamedTuple):
     cross: TabulatedCurve
 
 
+class NodeTips(NamedTuple):
+    """Tips of one axis for the contacts at the nodes of the pass."""
+
+    tip: Array
+    """Rows of the tip and its rate."""
+    swings: NDArray[np.bool_]
+    """Whether the tip goes another way than the contact between a node and the next one."""
+
+
 class ExitStep(NamedTuple):
     """Newton's step."""
 
@@ -68,6 +89,27 @@ class Exit(NamedTuple):
     s: float
     w: float
     point: Moving
+
+
+def new_node_tips() -> NodeTips:
+    """Memory for the tips of one axis."""
+    rows = 2 * MIDDLE + 1
+    return NodeTips(np.empty((rows, 6)), np.empty(rows, dtype=np.bool_))
+
+
+@jit_uncounted_inline
+def place_node_tips(sweep: CutterSweep, axis: Triple, tips: NodeTips) -> None:
+    """Place the tips of an axis, which serve the exits on both sides."""
+    cutter, nodes = sweep.cutter, sweep.feed.nodes
+    radius, before = cutter.flat + cutter.corner, (0.0, 0.0, 0.0)
+    for k in range(sweep.feed.first, sweep.feed.last + 1):
+        after = tip_at_node(cutter, axis, nodes, k)
+        store_moving(tips.tip, k, after)
+        if k > sweep.feed.first:
+            centre = plus(read_moving(nodes.offset, k).point, read_moving(nodes.offset, k - 1).point, -1.0)
+            swing = plus(plus(after.point, before, -1.0), centre, -1.0)
+            tips.swings[k - 1] = not dot(swing, swing) < 0.09 * radius * radius
+        before = after.point
 
 
 @jit_uncounted_inline
@@ -152,7 +194,8 @@ def _secant(new: Triple, old: Triple, dw: float) -> Triple:
 
 
 @jit_uncounted_inline
-def solve_exit(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], part: int, scratch: Scratch) -> Exit:
+def solve_exit(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], part: int, tips: NodeTips,
+               scratch: Scratch) -> Exit:
     """Newton's method from (s, w) for an exit through one part of the cutter.
 
     Not found where it does not converge, leaves the tables, or finds a place where the surface enters the cutter.
@@ -160,8 +203,7 @@ def solve_exit(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], par
     cutter, feed, cross = sweep.cutter, sweep.feed, sweep.cross
     nodes, radius = feed.nodes, cutter.flat + cutter.corner
     low, high = max(MIDDLE - 1, feed.first), min(MIDDLE + 1, feed.last)
-    second = _secant(tip_at_node(cutter, axis, nodes, high).rate, tip_at_node(cutter, axis, nodes, low).rate,
-                     nodes.w[high] - nodes.w[low])
+    second = _secant(read_moving(tips.tip, high).rate, read_moving(tips.tip, low).rate, nodes.w[high] - nodes.w[low])
     (s, w), w_old, k, m, exact = guess, 0.0, MIDDLE, MIDDLE, 0
     point = tip = Moving((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for step in range(_STEPS):
@@ -197,7 +239,7 @@ def solve_exit(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], par
 
 
 @jit_uncounted_inline
-def is_first_exit(sweep: CutterSweep, axis: Triple, exit: Exit) -> bool:
+def is_first_exit(sweep: CutterSweep, axis: Triple, exit: Exit, tips: NodeTips) -> bool:
     """Whether points a third and two thirds of the way are covered, and the exit is not covered by another contact.
 
     From the exit's own contact outwards the cutter must come no nearer again, but where it is far off anyway.
@@ -212,36 +254,31 @@ def is_first_exit(sweep: CutterSweep, axis: Triple, exit: Exit) -> bool:
     k = find_interval(feed, MIDDLE, exit.w)
     for side in range(2):
         start, end, step = (k, feed.first, -1) if side == 0 else (k + 1, feed.last, 1)
-        if not _recedes(cutter, axis, exit.point, feed.nodes, (start, end, step)):
+        if not _recedes(sweep, axis, exit.point, tips, (start, end, step)):
             return False
     return True
 
 
 @jit_uncounted_inline
-def _recedes(cutter: CutterParameters, axis: Triple, point: Moving, nodes: CurveNodes,
-             walk: tuple[int, int, int]) -> bool:
+def _recedes(sweep: CutterSweep, axis: Triple, point: Moving, tips: NodeTips, walk: tuple[int, int, int]) -> bool:
     """Whether the cutter goes away from a point from node to node, unless it is far off.
 
     Where the normal passes by the axis the tip swings about the contact: there the walk goes in shorter steps.
     """
+    cutter, nodes = sweep.cutter, sweep.feed.nodes
     radius = cutter.flat + cutter.corner
     start, end, side = walk
-    last, before = 0.0, tip_at_node(cutter, axis, nodes, start).point
+    last = 0.0
     for k in range(start, end + side, side):
-        after = tip_at_node(cutter, axis, nodes, k)
-        parts = 1
-        if k != start:
-            centre = plus(read_moving(nodes.offset, k).point, read_moving(nodes.offset, k - side).point, -1.0)
-            swing = plus(plus(after.point, before, -1.0), centre, -1.0)
-            parts = 1 if dot(swing, swing) < 0.09 * radius * radius else 8
+        near = min(k, k - side)
+        parts = 8 if k != start and tips.swings[near] else 1
         for part in range(1, parts + 1):
-            tip = after
+            tip = read_moving(tips.tip, k)
             if part < parts:
                 w = nodes.w[k - side] + (nodes.w[k] - nodes.w[k - side]) * part / parts
-                tip = tip_between_nodes(cutter, axis, nodes, min(k, k - side), w)
-            f = gap_rates(cutter, axis, point, tip)
-            if f.gap < 0.5 * radius and (f.gap < last or side * f.by_w < 0.0):
+                tip = tip_between_nodes(cutter, axis, nodes, near, w)
+            gap = signed_distance(cutter, axis, plus(point.point, tip.point, -1.0))
+            if gap < 0.5 * radius and (gap < last or side * gap_rates(cutter, axis, point, tip).by_w < 0.0):
                 return False
-            last = f.gap
-        before = after.point
+            last = gap
     return True
