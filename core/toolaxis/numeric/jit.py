@@ -111,6 +111,30 @@ def jit_uncounted_inline(function: _Function) -> _Function:
     return _compile(function, {"contract"}, inline=True, counted=False)
 
 
+def jit_unfused(function: _Function) -> _Function:
+    """Compile a kernel as `jit` does, without counting references to arrays, as `jit_uncounted` says it.
+
+    The results are those of `jit` to the last bit.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, False, counted=False)
+
+
+def jit_unfused_inline(function: _Function) -> _Function:
+    """Compile a small kernel as `jit_unfused` does, and build it into the code of whatever calls it.
+
+    Parameters
+    ----------
+    function : callable
+        A function on arrays and numbers that numba can compile.
+    """
+    return _compile(function, False, inline=True, counted=False)
+
+
 def _kernel_class() -> Any:
     """The class of kernels that are built into one another, or None where this numba has no place for it."""
     try:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric import jit as _compiled
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit, jit_unfused_inline
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def slabs(loops: tuple[Array, ...]) -> EdgeIndex:
     return EdgeIndex(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height, border)
 
 
-@jit
+@jit_unfused_inline
 def lies_inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]],
                 grid: tuple[float, float, float, float], x: float, y: float) -> bool:
     """Whether one point lies inside an odd number of loops; a part of kernels.

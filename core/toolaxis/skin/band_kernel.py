@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit_unfused, jit_unfused_inline
 from toolaxis.skin.point_grid import PointGrid, find_nearest
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Height(NamedTuple):
     yy: float
 
 
-@jit
+@jit_unfused
 def find_foot(band: BandTable, x: float, y: float, nearest: Index, square: Array) -> Foot:
     """The nearest place on the outline.
 
@@ -100,7 +100,7 @@ def find_foot(band: BandTable, x: float, y: float, nearest: Index, square: Array
     return found
 
 
-@jit
+@jit_unfused_inline
 def height_of(band: BandTable, origin: Array, d: Array) -> Height:
     """The height of a point, from its six vectors (6, 3) S, Su, Sv, Suu, Suv, Svv with the place in the plane.
 
@@ -118,7 +118,7 @@ def height_of(band: BandTable, origin: Array, d: Array) -> Height:
                   d[5, 0] * a + d[5, 1] * b + d[5, 2] * c)
 
 
-@jit
+@jit_unfused_inline
 def _plane_at(foot: Foot, at: Height, x: float, y: float, rise: float) -> Height:
     """The tangent plane at the foot, which levels off, at a place."""
     away_x, away_y, way_x, way_y = x - foot.x, y - foot.y, foot.way_x, foot.way_y
@@ -140,7 +140,7 @@ def _plane_at(foot: Foot, at: Height, x: float, y: float, rise: float) -> Height
                   bent * way_y * way_y + flatter * (2.0 * across_y * way_y) - level * aside_y * aside_y)
 
 
-@jit
+@jit_unfused
 def blend_into_spline(band: BandTable, foot: Foot, at: Height, spline: Height, x: float, y: float) -> Height:
     """What the band adds to the height of a spline at a place.
 
@@ -177,7 +177,7 @@ def blend_into_spline(band: BandTable, foot: Foot, at: Height, spline: Height, x
                   weight * (plane.yy - spline.yy) + first * 2.0 * out_y * turn_y + around * (1.0 - yy) + swell * yy)
 
 
-@jit
+@jit_unfused_inline
 def add_height(band: BandTable, more: Height, d: Array) -> None:
     """Raise a point and its derivatives, six vectors (6, 3), over the plane.
 

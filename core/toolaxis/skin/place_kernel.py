@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit, jit_unfused, jit_unfused_inline
 
 Array = NDArray[np.float64]
 
@@ -31,13 +31,13 @@ class PlaceFrame(NamedTuple):
     ends: Array
 
 
-@jit
+@jit_unfused_inline
 def _part(rows: Array, k: int, vector: Array) -> float:
     """Coordinate k of a vector in the plane."""
     return float(rows[k, 0] * vector[0] + rows[k, 1] * vector[1] + rows[k, 2] * vector[2])
 
 
-@jit
+@jit_unfused_inline
 def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> float:
     """Newton's method from the parameters in ``uv``; the square of how far from the place it gave up, mm^2, 0 where it
     ended, and then ``d`` holds the vectors there."""
@@ -66,7 +66,7 @@ def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array,
     return away
 
 
-@jit
+@jit_unfused_inline
 def _carry_vectors(along_u: float, along_v: float, d: Array) -> None:
     """S, Su and Sv carried on by a last step, which is so short that the bend does not change."""
     for c in range(3):
@@ -75,7 +75,7 @@ def _carry_vectors(along_u: float, along_v: float, d: Array) -> None:
         d[2, c] += along_u * d[4, c] + along_v * d[5, c]
 
 
-@jit
+@jit_unfused
 def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d: Array, work: Array) -> None:
     """Parameters of a surface at one place of the plane, with the six vectors there.
 
@@ -126,7 +126,7 @@ def find_places(data: SurfaceData, frame: PlaceFrame, places: Array, uv: Array, 
         find_place(data, frame, places[i], uv[i], out[i], work)
 
 
-@jit
+@jit_unfused
 def turn_place_into_plane(rows: Array, d: Array, memory: Array) -> None:
     """Vectors S, Su, Sv, Suu, Suv, Svv of one place turned into derivatives with the place in the plane, in place.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit_unfused, jit_unfused_inline
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -54,7 +54,7 @@ def sort_into_cells(points: Array, size: float | None = None) -> PointGrid:
                      columns, rows)
 
 
-@jit
+@jit_unfused_inline
 def _cell_at(way: float, size: float, count: int) -> int:
     """The cell in which a distance from the lower corner lies, or the nearest one."""
     position = way / size
@@ -63,7 +63,7 @@ def _cell_at(way: float, size: float, count: int) -> int:
     return count - 1 if position >= count else floor(position)
 
 
-@jit
+@jit_unfused_inline
 def _look_into_cells(grid: PointGrid, first: int, last: int, x: float, y: float, nearest: Index,
                      square: Array) -> None:
     """Put points of cells first to last into the list of the nearest ones."""
@@ -80,7 +80,7 @@ def _look_into_cells(grid: PointGrid, first: int, last: int, x: float, y: float,
         square[at], nearest[at] = away, grid.number[k]
 
 
-@jit
+@jit_unfused
 def find_nearest(grid: PointGrid, x: float, y: float, limit: float, nearest: Index, square: Array) -> None:
     """Numbers of the nearest points to a place, the nearest first.
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import SurfaceData, surface_derivatives
-from toolaxis.numeric.jit import jit
+from toolaxis.numeric.jit import jit, jit_unfused, jit_unfused_inline
 from toolaxis.numeric.polygons import EdgeIndex, lies_inside
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.skin.band_kernel import TRIED, BandTable, add_height, blend_into_spline, find_foot, height_of
@@ -129,7 +129,7 @@ def tabulate_splines(surfaces: Sequence[NurbsSurface], ends: Sequence[Array], be
                        np.array(first, dtype=np.int64), np.array(size, dtype=np.int64), np.stack(ends), np.stack(begin))
 
 
-@jit
+@jit_unfused_inline
 def _lies_in(polygons: PolygonTable, k: int, x: float, y: float) -> bool:
     """Whether a point lies in polygon k."""
     edges, start, member, first, grid = polygons
@@ -144,14 +144,14 @@ def _new_memory() -> Memory:
                   np.empty(1, dtype=np.int64), np.empty(1))
 
 
-@jit
+@jit_unfused
 def _nearest_face(table: ViewTable, x: float, y: float, memory: Memory) -> int:
     """The face whose border is nearest to a place."""
     find_nearest(table.borders, x, y, np.inf, memory.one, memory.away)
     return int(table.beside[memory.one[0]])
 
 
-@jit
+@jit_unfused
 def _owner_at(table: ViewTable, x: float, y: float, memory: Memory) -> int:
     """Which face lies at a place; -1 beyond the outline around all."""
     boxes, covered, polygons = table.boxes, table.covered, table.polygons
@@ -172,7 +172,7 @@ def _owner_at(table: ViewTable, x: float, y: float, memory: Memory) -> int:
     return -1
 
 
-@jit
+@jit_unfused
 def _evaluate_face(table: ViewTable, k: int, place: Array, out: Array, memory: Memory) -> None:
     """The six vectors (6, 3) of a face at a place, with the place."""
     knots, control, first, size, ends, begin = table.splines
