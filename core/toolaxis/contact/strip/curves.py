@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.numeric.bicubic import SurfaceWalk, new_walk, walk_derivatives, walk_slopes
 from toolaxis.numeric.bspline import SurfaceData
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
+from toolaxis.numeric.surface_walk import SurfaceWalk, new_walk, walk_derivatives, walk_slopes
 from toolaxis.numeric.triples import Triple, combine, cross, dot, plus
 
 Array = NDArray[np.float64]
@@ -172,7 +172,7 @@ def _rates_along(su: Triple, sv: Triple, tangent: Triple, plane: Triple) -> tupl
     return (q / det, -p / det) if det != 0.0 else (0.0, 0.0)
 
 
-@jit_uncounted
+@jit_uncounted_inline
 def _section_parameters(surface: SurfaceData, curve: SurfaceCurve, w: float,
                         scratch: Scratch) -> tuple[float, float, float, float]:
     """u, v and their rates at w of a plane section, by Newton's method from node to node; fills `scratch`."""

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from toolaxis.numeric.bicubic import new_walk, walk_derivatives, walk_slopes
 from toolaxis.numeric.bspline import WORK_SHAPE, surface_derivatives
 from toolaxis.numeric.jit import jit
 from toolaxis.numeric.lanes import Lanes, add_scaled, lane, load_lanes, no_lanes, scale, shrink
+from toolaxis.numeric.surface_walk import new_walk, walk_derivatives, walk_slopes
 
 
 def surface(degree: tuple[int, int], rational: bool) -> Any:
@@ -35,7 +35,7 @@ def places(data: Any) -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize("where", ["inside", "near", "beyond", "knots"])
 @pytest.mark.parametrize("rational", [False, True])
-@pytest.mark.parametrize("degree", [(3, 3), (2, 3), (3, 5), (1, 1)])
+@pytest.mark.parametrize("degree", [(3, 3), (2, 3), (2, 2), (1, 3), (2, 1), (3, 5), (1, 1)])
 def test_a_walk_gives_the_same_numbers(degree: tuple[int, int], rational: bool, where: str) -> None:
     data = surface(degree, rational)
     walk, walk_of_slopes, work = new_walk(), new_walk(), np.empty(WORK_SHAPE)
