@@ -13,7 +13,6 @@ from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.solid_grid import SolidGrid, pack_grid
 from toolaxis.regions.solid_kernel import ConeLines, sweep_lines
 from toolaxis.shape.face import Face
-from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -136,14 +135,19 @@ def test_lines_are_none_where_a_face_may_lie_deep_in_a_tool() -> None:
     assert lines_of_rack((), np.array([[0.0, 0.5, 1.0, 0.0]] * 2), 0.9) is None
 
 
+def scene_of(solid: object) -> ReachScene:
+    """A part with what stands in the way on it, which takes a second to be made."""
+    return ReachScene.of(ta.load(solid))
+
+
 @pytest.fixture(scope="module")
-def undercut() -> Part:
+def undercut() -> ReachScene:
     """A block with a T-slot, shut at both ends: 6 mm wide and 40 long at the top, 26 mm wide and 10 high below."""
     cq = pytest.importorskip("cadquery")
     wide = cq.Workplane().box(61, 26, 10).translate((0, 0, -5))
     narrow = cq.Workplane().box(40, 6, 20).translate((0, 0, 10))
     ends = [cq.Workplane().box(2, 40, 30).translate((side * 31, 0, 0)) for side in (-1, 1)]
-    return ta.load(cq.Workplane().box(60, 40, 30).cut(wide).cut(narrow).union(ends[0]).union(ends[1]))
+    return scene_of(cq.Workplane().box(60, 40, 30).cut(wide).cut(narrow).union(ends[0]).union(ends[1]))
 
 
 def places_of(face: Face) -> Array:
@@ -151,19 +155,19 @@ def places_of(face: Face) -> Array:
     return np.asarray(face.evaluate(face.grid(9, 9)).point)
 
 
-def look(part: Part, at: tuple[int, float], tools: tuple[Tool, ...] = TOOLS) -> tuple[Claim, float]:
+def look(scene: ReachScene, at: tuple[int, float], tools: tuple[Tool, ...] = TOOLS) -> tuple[Claim, float]:
     """What is proven of the largest face whose places have some coordinate, and the area of that face."""
-    scene = ReachScene.of(part)
-    face = max((one for one in part.faces if len(places_of(one)) and np.allclose(places_of(one)[:, at[0]], at[1])),
-               key=lambda one: one.area)
+    faces = [face for face in scene.part.faces
+             if len(places_of(face)) and np.allclose(places_of(face)[:, at[0]], at[1])]
+    face = max(faces, key=lambda one: one.area)
     found = AxisLines.look(face, tools, scene.required(face, steps_count=False), scene, 5000)
     area = float(sum(one.area.sum() for one in found.proven))
     return Claim(face, area, np.concatenate([one.rectangles for one in found.proven])), face.area
 
 
-def test_the_grid_holds_no_place_outside_the_part_and_none_near_no_face(undercut: Part) -> None:
+def test_the_grid_holds_no_place_outside_the_part_and_none_near_no_face(undercut: ReachScene) -> None:
     """Against a part that is told by hand."""
-    grid = ReachScene.of(undercut).solid.grid
+    grid = undercut.solid.grid
     assert grid is not None
     rng = np.random.default_rng(6)
     cells = rng.integers(0, grid.shape, (20_000, 3))
@@ -184,11 +188,12 @@ def test_the_grid_holds_no_place_outside_the_part_and_none_near_no_face(undercut
                 == material).all()
 
 
-def test_what_an_undercut_hides_is_proven_and_the_rest_is_not(undercut: Part) -> None:
+def test_what_an_undercut_hides_is_proven_and_the_rest_is_not(undercut: ReachScene) -> None:
+    attack = Attack(undercut.part, TOOLS, axes=200)
     for at, least in (((2, 0.0), 0.6), ((1, -13.0), 0.6)):
         claim, whole = look(undercut, at)
         assert least * whole < claim.area <= whole * (1 + 1e-9), at
-        attack, rng = Attack(undercut, TOOLS, axes=200), np.random.default_rng(5)
+        rng = np.random.default_rng(5)
         for place in draw_places(claim, 6, rng):
             assert attack.reach(place).lack > 0, place.point
     floor, whole = look(undercut, (2, -10.0))
@@ -202,9 +207,9 @@ def test_a_wide_gap_in_the_roof_lets_lines_by() -> None:
     """The same room with an end open: the more of it is reached, the less is proven."""
     cq = pytest.importorskip("cadquery")
     room = cq.Workplane().box(50, 26, 10)
-    closed = ta.load(cq.Workplane().box(60, 40, 20).cut(room).cut(cq.Workplane().box(3, 3, 12).translate((0, 0, 5))))
-    opened = ta.load(cq.Workplane().box(60, 40, 20).cut(room).cut(cq.Workplane().box(30, 12, 12).translate((0, 0, 5))))
-    areas = [look(part, (2, -5.0))[0].area for part in (closed, opened)]
+    closed = scene_of(cq.Workplane().box(60, 40, 20).cut(room).cut(cq.Workplane().box(3, 3, 12).translate((0, 0, 5))))
+    opened = scene_of(cq.Workplane().box(60, 40, 20).cut(room).cut(cq.Workplane().box(30, 12, 12).translate((0, 0, 5))))
+    areas = [look(scene, (2, -5.0))[0].area for scene in (closed, opened)]
     assert areas[0] > 0.85 * 50 * 26 and areas[1] < 0.75 * areas[0]
 
 
@@ -212,25 +217,25 @@ def test_a_seam_where_bodies_touch_is_no_gap_for_thick_tools() -> None:
     cq = pytest.importorskip("cadquery")
     tub = cq.Workplane().box(60, 40, 30).cut(cq.Workplane().box(50, 30, 25).translate((0, 0, 5)))
     lids = [cq.Workplane().box(30, 40, 5).translate((side * 15, 0, 17.5)) for side in (-1, 1)]
-    part = ta.load(cq.Workplane(cq.Compound.makeCompound([tub.val(), lids[0].val(), lids[1].val()])))
-    floor, whole = look(part, (2, -7.5))
+    scene = scene_of(cq.Workplane(cq.Compound.makeCompound([tub.val(), lids[0].val(), lids[1].val()])))
+    floor, whole = look(scene, (2, -7.5))
     assert floor.area > 0.8 * whole, "nothing gets into it but along the seam of the lids"
 
 
 def test_in_a_thin_shell_and_an_open_one_nothing_is_proven() -> None:
     cq = pytest.importorskip("cadquery")
-    thin = ta.load(cq.Workplane().box(60, 60, 40).faces("<Z").shell(-0.1))
+    thin = scene_of(cq.Workplane().box(60, 60, 40).faces("<Z").shell(-0.1))
     assert look(thin, (2, 20.0))[0].area == 0.0
     whole = cq.Workplane().box(60, 60, 40)
     faces = whole.faces(">Z or <X or >X or <Y or >Y").vals()
-    shell = ta.load(cq.Workplane(cq.Compound.makeCompound([cq.Shell.makeShell(faces)])))
-    assert ReachScene.of(shell).solid.grid is None
+    shell = scene_of(cq.Workplane(cq.Compound.makeCompound([cq.Shell.makeShell(faces)])))
+    assert shell.solid.grid is None
     assert look(shell, (2, 20.0))[0].area == 0.0
 
 
-def test_less_time_proves_no_more(undercut: Part) -> None:
-    scene = ReachScene.of(undercut)
-    face = next(one for one in undercut.faces if np.allclose(one.evaluate(one.grid(3, 3)).point[:, 1], -13.0))
+def test_less_time_proves_no_more(undercut: ReachScene) -> None:
+    scene = undercut
+    face = next(one for one in scene.part.faces if np.allclose(one.evaluate(one.grid(3, 3)).point[:, 1], -13.0))
     required = scene.required(face, steps_count=False)
     areas = [sum(float(one.area.sum()) for one in AxisLines.look(face, TOOLS, required, scene, most).proven)
              for most in (0, 20, 5000)]
