@@ -73,14 +73,18 @@ TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "tes
             ("test_many_jobs.py", "test_moving.py", "test_small_window.py", "test_verify_panel.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
-# What runs outside FreeCAD for longest, which follows: on one process alone it would keep all waiting at the end.
-LONGEST = ("job/test_run.py", "job/test_failures.py", "orient/test_search.py",
-           "tests/test_readme.py", "messages/test_german.py", "job/test_pattern.py", "orient/test_best_axis.py",
-           "partition/test_times.py", "job/test_left_whole.py", "job/test_abreast.py", "hard/test_domes.py",
-           "orient/test_four_plus_one.py", "orient/test_passes_along_planes.py", "job/test_folder_example.py",
-           "path/test_fields.py", "hard/test_axis_of_the_passes.py", "partition/test_bad_bosses.py",
-           "partition/test_regions.py", "job/test_blade_strategy.py", "job/test_division.py",
-           "orient/test_kinematic_axis.py", "contact/test_strip_brute.py", "contact/test_safety_trimmed.py")
+# What runs outside FreeCAD for longest, the longest first: on one process alone it would keep all waiting at the end.
+LONGEST = ("job/test_rack.py", "regions/test_out_of_reach.py", "job/test_run.py", "verify/test_three_judges.py",
+           "orient/test_best_axis.py", "numeric/test_jit.py", "messages/test_german.py", "regions/test_axis_lines.py",
+           "cad/test_kernel_agreement.py", "job/test_failures.py", "orient/test_four_plus_one.py",
+           "regions/test_reach_screen.py", "partition/test_times.py", "job/test_face_by_face.py",
+           "verify/test_edges.py", "job/test_pattern.py", "path/test_fields.py", "job/test_step_over.py",
+           "tests/test_wheel.py", "regions/test_divide_by_reach.py", "tests/test_readme.py",
+           "job/test_page_in_browser.py", "orient/test_passes_along_planes.py", "path/test_mending.py",
+           "job/test_stock.py", "orient/test_search.py", "cli/test_kept.py", "tests/test_benchmarks.py",
+           "hard/test_axis_of_the_passes.py", "batch/test_cluster.py", "path/test_left_over.py", "cli/test_choices.py",
+           "job/test_left_whole.py", "job/test_folder_example.py", "partition/test_regions.py",
+           "orient/test_kinematic_axis.py", "contact/test_safety_trimmed.py")
 READY = {}
 # CAM's modules load Qt, and Qt crashes Python in FreeCAD 1.0 where pytest was loaded before it
 STARTER = "import sys, FreeCAD, Path.Main.Job, pytest; sys.exit(pytest.main(sys.argv[1:]))"
@@ -96,16 +100,22 @@ def pytest_configure(config):
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items):
-    """FIRST, then what runs in FreeCAD, then LONGEST: none that takes minutes should begin when all else is done."""
+    """FIRST, then what runs in FreeCAD and LONGEST in turns, then the rest.
+
+    None that takes minutes should begin when all else is done.  What drives a window waits for it half of the time: in
+    turns with what computes, it leaves no core idle.
+    """
     _put_together(items)
+    inside = list(dict.fromkeys(item.path for item in items if isinstance(item, InnerRun)))
 
     def place(item):
         name = item.path.as_posix()
-        for group, names in enumerate((FIRST, LONGEST)):
-            for k, end in enumerate(names):
-                if name.endswith(end):
-                    return 2 * group, k
-        return (1, 0) if isinstance(item, InnerRun) else (3, 0)
+        for k, end in enumerate(FIRST):
+            if name.endswith(end):
+                return 0, k
+        if isinstance(item, InnerRun):
+            return 1, 2 * inside.index(item.path)
+        return next(((1, 2 * k + 1) for k, end in enumerate(LONGEST) if name.endswith(end)), (2, 0))
 
     items.sort(key=place)
 
