@@ -62,19 +62,25 @@ def test_map_and_lobes_tell_what_was_looked_at(make):
         assert lobe.count > 0.99 * found.count or lobe.feed != found.feed
 
 
+@pytest.fixture(scope="module")
+def searched(make):
+    """The axis that is found on the face on which methods are compared."""
+    return best_axis(make.seeded(73), TOOL, H, method="sphere")
+
+
 @pytest.mark.parametrize("method", ["sphere", pytest.param("sectors", marks=pytest.mark.long)])
-def test_both_methods_beat_the_mean_normal_side(make, method):
+def test_both_methods_beat_the_mean_normal_side(make, searched, method):
     face = make.seeded(73)
-    found = best_axis(face, TOOL, H, method=method)
+    found = searched if method == "sphere" else best_axis(face, TOOL, H, method=method)
     plain = evaluate_axis(face, TOOL, unit([0.5, 0.3, 1.0]), H)
     assert found.outcome == plain.outcome == "feasible"
     assert found.length <= plain.length
     assert found.outcome in OUTCOMES
 
 
-def test_rules_name_one_axis_and_stay_with_it(make):
+def test_rules_name_one_axis_and_stay_with_it(make, searched):
     face = make.seeded(73)
-    searched, ruled = (best_axis(face, TOOL, H, method=method) for method in ("sphere", "roman"))
+    ruled = best_axis(face, TOOL, H, method="roman")
     assert ruled.outcome == "feasible" and ruled.count > searched.count
     again = evaluate_axis(face, TOOL, ruled.axis, H)
     assert (again.length, again.passes, again.feed) == (ruled.length, ruled.passes, ruled.feed)
