@@ -19,7 +19,7 @@ from toolaxis.report.figures.comparison_chart import baselines_picture, options_
 from toolaxis.report.figures.hatch_fill import COLOUR
 from toolaxis.report.figures.hemisphere import equal_area, hemisphere_picture
 from toolaxis.report.figures.map_colouring import colour_map
-from toolaxis.report.figures.plan_overview import join_labels, overview_picture
+from toolaxis.report.figures.plan_overview import LabelPlaces, join_labels, overview_picture, side_of_tools
 from toolaxis.report.figures.plots import (
     WidthStudy,
     cutting_lines,
@@ -97,6 +97,29 @@ def test_sub_surfaces_without_an_axis_beside_each_other_have_one_label() -> None
     none = replace(op, orientation=Orientation(None, outcome="infeasible"), path=None)
     made = overview_picture(replace(plan, operations=(op, replace(none, number=2), replace(none, number=3))))
     assert [one.get_text() for one in made.axes[0].texts if "no axis" in one.get_text()] == ["2, 3: no axis"]
+
+
+def test_labels_of_axes_that_end_at_one_place_do_not_lie_on_each_other() -> None:
+    """Found: the numbers 5 and 19 of two axes were one blot."""
+    labels, place, wish = LabelPlaces(2.0), np.array([30.0, 20.0]), np.array([0.0, 10.0])
+    found = [2.0 * place + labels.find("12", place, wish) for _ in range(6)]
+    assert np.array_equal(found[0] - 2.0 * place, wish)
+    for k, one in enumerate(found):
+        for other in found[:k]:
+            assert abs(one - other)[0] >= 16.9 or abs(one - other)[1] >= 11.9
+    far = np.array([300.0, 20.0])
+    assert np.array_equal(labels.find("12", far, wish), wish)
+
+
+def test_the_part_is_seen_from_where_most_of_it_is_machined() -> None:
+    """Found: a bore, whose normals cancel, was looked at from below."""
+    _, op = planned()
+    axes = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    both = [replace(op, orientation=replace(op.orientation, axis=axis)) for axis in axes]
+    small = both[1].face.trimmed((np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 1.0], [0.0, 1.0]]),))
+    assert np.allclose(side_of_tools([both[0], replace(both[1], face=small)]), axes[0])
+    none = replace(op, orientation=Orientation(None), path=None)
+    assert side_of_tools([none])[2] > 0.9, "without an axis the normals tell"
 
 
 def test_overview_shows_a_sliver_that_is_left() -> None:

@@ -1,5 +1,7 @@
 """The whole plan in one picture: the part coloured by sub-surface, its passes, and an arrow for each axis."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.axes import Axes
@@ -28,6 +30,10 @@ _LIFT = 3
 _COVERED = 0.995
 #: Width and height of a label of a sub-surface without an axis, in widths of the picture.
 _NEAR = np.array([0.14, 0.03])
+#: Points of the page in an inch, width and height of a letter of a label, points, and how many times farther from its
+#: place, and how much turned about it, rad, a label stands that has no room.
+_POINTS, _WIDE_LETTER, _HIGH_LETTER = 72.0, 8.5, 12.0
+_FARTHER, _TURNS = (1.0, 1.7, 2.4, 3.2), tuple(np.radians([40, -40, 80, -80, 120, -120, 180]))
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
@@ -45,8 +51,7 @@ def overview_picture(plan: Plan) -> Figure:
     """
     copies = {} if plan.blades is None else plan.blades.copies
     operations = tuple(op for op in plan.operations if op.number not in copies)
-    normals = np.array([mean_direction(op.face.normal(op.face.places_on(12))) for op in operations])
-    middle = mean_direction(normals)
+    middle = side_of_tools(operations)
     corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
     arrow = (0.22 if len(operations) <= _MANY else 0.16) * float(np.linalg.norm(np.ptp(corners, axis=0)))
     roots = np.array([root_of(op) for op in operations])
@@ -81,10 +86,12 @@ def overview_picture(plan: Plan) -> Figure:
     feet, tips = seen.project(roots)[:, :2], seen.project(heads)[:, :2]
     at_feet = _apart(feet) > _apart(tips)
     lost: dict[int, Array] = {}
+    labels = LabelPlaces(_POINTS * 9.0 / (seen.extent[1] - seen.extent[0]))
     for op, foot, tip in zip(operations, feet, tips, strict=True):
         _passes(ax, canvas, op)
+        _borders(ax, canvas, op)
         if op.done:
-            _arrow(ax, op, (foot, tip), at_feet)
+            _arrow(ax, op, (foot, tip), at_feet, labels)
         elif outcome_of([op], plan.blades) == "incomplete":
             lost[op.number] = foot
     for numbers, place in join_labels(lost, _NEAR * float(np.ptp(seen.extent[:2]))):
@@ -101,6 +108,20 @@ def overview_picture(plan: Plan) -> Figure:
     scale_bar(ax, seen)
     bare(ax)
     return made
+
+
+def side_of_tools(operations: Sequence[Operation]) -> Array:
+    """From where the tools come on the mean, by areas; where there are none, the mean normal, (3,) unit vector.
+
+    Parameters
+    ----------
+    operations : sequence of Operation
+    """
+    rows = [(op.orientation.axis, op.face.area) for op in operations if op.done and op.orientation.axis is not None]
+    if not rows:
+        rows = [(mean_direction(op.face.normal(op.face.places_on(12))), 1.0) for op in operations]
+    whole = sum(area for _, area in rows)
+    return mean_direction(np.array([len(rows) * area / whole * way for way, area in rows]))
 
 
 def _left(plan: Plan) -> list[tuple[list[Face], float]]:
@@ -149,6 +170,15 @@ def _passes(ax: Axes, canvas: Canvas, op: Operation) -> None:
         ax.add_collection(LineCollection(runs, colors="#333333", linewidths=0.25))
 
 
+def _borders(ax: Axes, canvas: Canvas, op: Operation) -> None:
+    """Where a sub-surface ends: neighbours under one tool have its colour both."""
+    slack = 3 * canvas.camera.pixel
+    lines = [op.face.evaluate(np.vstack([loop, loop[:1]])).point for loop in op.face.outline]
+    runs = [run for line in lines for run in visible_runs(canvas, line, slack)]
+    ax.add_collection(LineCollection(runs, colors="white", linewidths=1.6))
+    ax.add_collection(LineCollection(runs, colors="#222222", linewidths=0.7))
+
+
 def _apart(places: Array) -> float:
     """How near the two nearest of (n, 2) places are."""
     return float(cKDTree(places).query(places, k=2)[0][:, 1].min()) if len(places) > 1 else 0.0
@@ -179,14 +209,55 @@ def join_labels(places: dict[int, Array], near: Array) -> list[tuple[list[int], 
     return found
 
 
-def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool) -> None:
+class LabelPlaces:
+    """Where labels stand in a picture, none on another one as far as there is room.
+
+    Parameters
+    ----------
+    scale : float
+        Points of the page for each mm of the picture.
+    """
+
+    def __init__(self, scale: float) -> None:
+        self._scale = scale
+        self._taken: list[Array] = []
+
+    def find(self, words: str, place: Array, offset: Array) -> Array:
+        """The offset of a label from its place, (2,) in points: the one that is wished for, else the nearest free one.
+
+        Parameters
+        ----------
+        words : str
+        place : (2,) array
+            mm
+        offset : (2,) array
+            Wished for, in points.
+        """
+        half = np.array([_WIDE_LETTER * len(words), _HIGH_LETTER]) / 2
+        first, length = float(np.arctan2(offset[1], offset[0])), float(np.linalg.norm(offset))
+        ways = [(times * length, first + turn) for times in _FARTHER for turn in _TURNS]
+        offsets = [offset, *(far * np.array([np.cos(turn), np.sin(turn)]) for far, turn in ways)]
+        boxes = [np.concatenate([self._scale * place + one, half]) for one in offsets]
+        free = (k for k, box in enumerate(boxes) if not any(_meet(box, other) for other in self._taken))
+        best = next(free, 0)
+        self._taken.append(boxes[best])
+        return np.asarray(offsets[best])
+
+
+def _meet(one: Array, other: Array) -> bool:
+    """Whether two boxes, each of middle and half sides, (4,), overlap."""
+    return bool((abs(one[:2] - other[:2]) < one[2:] + other[2:]).all())
+
+
+def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool, labels: LabelPlaces) -> None:
     """The axis as an arrow, its number behind the foot or before the tip."""
     foot, tip = ((float(end[0]), float(end[1])) for end in ends)
     ax.plot(*foot, "o", color="black", markersize=3.5)
     ax.annotate("", tip, foot, arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 1.4})
     length = float(np.linalg.norm(ends[1] - ends[0]))
     way = (ends[1] - ends[0]) / length if length > 0 else np.array([0.5, 0.5])
-    _write(ax, f"{op.number}", ends[0] if at_foot else ends[1], (-10 if at_foot else 9) * way)
+    place, words = ends[0] if at_foot else ends[1], f"{op.number}"
+    _write(ax, words, place, labels.find(words, place, (-10 if at_foot else 9) * way))
 
 
 def _write(ax: Axes, words: str, place: Array, offset: ArrayLike) -> None:

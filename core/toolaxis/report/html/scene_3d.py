@@ -16,7 +16,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.figures.hatch_fill import zone_faces
 from toolaxis.report.figures.map_colouring import colour_map
-from toolaxis.report.figures.plan_overview import root_of, view_onto
+from toolaxis.report.figures.plan_overview import root_of, side_of_tools, view_onto
 from toolaxis.report.figures.plots import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, cutting_lines
 from toolaxis.report.figures.splat_renderer import mean_direction
 from toolaxis.report.figures.tessellation import outline_loops, triangles
@@ -74,8 +74,7 @@ def scene(plan: Plan, worst: Mapping[str, Sequence[Mapping[str, Any]]]) -> PageS
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     whole = {number for op in plan.operations for number in op.face.numbers}
     rest = [face for face in plan.part.faces if not whole.intersection(face.numbers)]
-    normals = [mean_direction(op.face.normal(op.face.grid(12, 12))) for op in originals if len(op.face.grid(12, 12))]
-    back, up = view_onto(mean_direction(np.array(normals)) if normals else np.array([0.0, 0.0, 1.0]))
+    back, up = view_onto(side_of_tools(originals) if originals else np.array([0.0, 0.0, 1.0]))
     drawn = _Meshes(_COARSE * size, unit(unit(back) + 0.5 * unit(up)))
     traces = [drawn.mesh(rest, "part", _PART)] if rest else []
     for op, colour in zip(originals, colour_map(originals) if originals else (), strict=True):
