@@ -33,6 +33,7 @@ ENGLISH_THROUGHOUT = {
     "post/tcp_program.py": "a note of the setup sheet",
     "post/dialects/": "comments in programs are English",
     "tools/cutters/": "names of kinds of cutters, which the window takes from resources/translations",
+    "plan/remedies.py": "words that it looks for in sentences, which have entries of their own",
     "job/planning/failures.py": "error.txt, which is sent in with a report",
 }
 #: Texts that look like sentences and have no entry of their own, and why.
