@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.planning import other_tools, rack, share_axes
-from toolaxis.job.planning.other_tools import FirstRound, seconds_of, takes_less_time
+from toolaxis.job.planning.other_tools import ReckonedTimes, seconds_of, takes_less_time
 from toolaxis.job.planning.share_axes import share_axes as share
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.numeric.vectors import unit
@@ -112,7 +112,7 @@ def test_nothing_is_planned_twice_where_little_is_to_be_gained(large_first: None
     monkeypatch.setattr(other_tools, "_SECONDS", 1e6)
     plan = planned_bowl()
     assert [op.tool.name for op in plan.operations] == ["ball:8"]
-    assert not FirstRound().with_other_tools(plan.operations, plan.inputs, {0, 1})
+    assert not ReckonedTimes().find_slow_faces(plan.operations, plan.inputs, {0, 1})
 
 
 def test_what_takes_as_long_or_machines_less_is_not_taken(large_first: None, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +129,7 @@ def test_what_takes_as_long_or_machines_less_is_not_taken(large_first: None, mon
 
 def test_a_choice_keeps_what_it_reckoned_for_each_face() -> None:
     face, small = bowl().face(1), ToolChain((1,), 20.0, 0.0)
-    first = FirstRound()
+    first = ReckonedTimes()
     first.add([face], ToolChain((0,), 10.0, 0.0), [ToolChain((0,), 10.0, 0.0), small])
     assert first.reckoned[1][0].first == 0 and first.reckoned[1][0].chains[1] is small
     first.add([face], ToolChain((), 0.0, 0.0), [])

@@ -18,8 +18,9 @@ from toolaxis.plan.zone import Zone
 from toolaxis.report.figures.comparison_chart import baselines_picture, options_picture
 from toolaxis.report.figures.hatch_fill import COLOUR
 from toolaxis.report.figures.hemisphere import equal_area, hemisphere_picture
+from toolaxis.report.figures.label_places import LabelPlaces, join_labels
 from toolaxis.report.figures.map_colouring import colour_map
-from toolaxis.report.figures.plan_overview import LabelPlaces, join_labels, overview_picture, side_of_tools
+from toolaxis.report.figures.plan_overview import overview_picture, side_of_tools
 from toolaxis.report.figures.plots import (
     WidthStudy,
     cutting_lines,

@@ -17,7 +17,9 @@ from toolaxis.numeric.lanes import Lanes, add_scaled, lane, load_lanes, no_lanes
 Array = NDArray[np.float64]
 SurfaceData: TypeAlias = tuple[Array, Array, Array, int, int, bool]
 Four: TypeAlias = tuple[float, float, float, float]
+Five: TypeAlias = tuple[float, float, float, float, float]
 Six: TypeAlias = tuple[float, float, float, float, float, float]
+FourLanes: TypeAlias = tuple[Lanes, Lanes, Lanes, Lanes]
 SixLanes: TypeAlias = tuple[Lanes, Lanes, Lanes, Lanes, Lanes, Lanes]
 
 MAX_DEGREE = 25
@@ -237,12 +239,18 @@ def divide_six(six: SixLanes) -> SixLanes:
 
 
 @jit_uncounted_inline
-def store_six(six: SixLanes, out: Array) -> None:
-    """The six vectors into a (6, 3) array."""
-    s, su, sv, suu, suv, svv = six
+def store_slopes(s: Lanes, su: Lanes, sv: Lanes, out: Array) -> None:
+    """S, Su and Sv into the first three rows of a (6, 3) array."""
     out[0, 0], out[0, 1], out[0, 2] = lane(s, 0), lane(s, 1), lane(s, 2)
     out[1, 0], out[1, 1], out[1, 2] = lane(su, 0), lane(su, 1), lane(su, 2)
     out[2, 0], out[2, 1], out[2, 2] = lane(sv, 0), lane(sv, 1), lane(sv, 2)
+
+
+@jit_uncounted_inline
+def store_six(six: SixLanes, out: Array) -> None:
+    """The six vectors into a (6, 3) array."""
+    s, su, sv, suu, suv, svv = six
+    store_slopes(s, su, sv, out)
     out[3, 0], out[3, 1], out[3, 2] = lane(suu, 0), lane(suu, 1), lane(suu, 2)
     out[4, 0], out[4, 1], out[4, 2] = lane(suv, 0), lane(suv, 1), lane(suv, 2)
     out[5, 0], out[5, 1], out[5, 2] = lane(svv, 0), lane(svv, 1), lane(svv, 2)
@@ -262,21 +270,40 @@ def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], wor
 
 
 @jit_uncounted_inline
+def _carry_second(second: Lanes, third: Lanes, weights: Five, vectors: FourLanes, step: float) -> Lanes:
+    """A second derivative carried on across the border: Suu + dv Suuv.
+
+    Parameters
+    ----------
+    second, third : lanes
+        Suu, and uuv of the homogeneous coordinates.
+    weights : five floats
+        w, wu, wv, wuu, wuv.
+    vectors : four lanes
+        S, Su, Sv, Suv.
+    step : float
+        dv
+    """
+    w, wu, wv, wuu, wuv = weights
+    s, su, sv, suv = vectors
+    both = add_scaled(scale(wuv, su), wu, suv)
+    part = add_scaled(add_scaled(third, -wv, second), -2.0, both)
+    whole = add_scaled(add_scaled(part, -wuu, sv), -lane(third, 3), s)
+    return add_scaled(second, step, shrink(w, whole))
+
+
+@jit_uncounted_inline
 def extend_six(beyond: tuple[float, float], weights: Six, thirds: tuple[Lanes, Lanes], six: SixLanes) -> SixLanes:
     """The six vectors of the border carried on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
     (du, dv), (w, wu, wv, wuu, wuv, wvv), (s, su, sv, suu, suv, svv) = beyond, weights, six
     uuv, uvv = thirds
     whole = add_scaled(add_scaled(add_scaled(s, du, su), dv, sv), du * dv, suv)
     if du == 0.0:
-        both = add_scaled(scale(wuv, su), wu, suv)
-        part = add_scaled(add_scaled(uuv, -wv, suu), -2.0, both)
-        suu = add_scaled(suu, dv, shrink(w, add_scaled(add_scaled(part, -wuu, sv), -lane(uuv, 3), s)))
+        suu = _carry_second(suu, uuv, (w, wu, wv, wuu, wuv), (s, su, sv, suv), dv)
     else:
         suu = scale(0.0 * du, no_lanes())
     if dv == 0.0:
-        both = add_scaled(scale(wuv, sv), wv, suv)
-        part = add_scaled(add_scaled(uvv, -wu, svv), -2.0, both)
-        svv = add_scaled(svv, du, shrink(w, add_scaled(add_scaled(part, -wvv, su), -lane(uvv, 3), s)))
+        svv = _carry_second(svv, uvv, (w, wv, wu, wvv, wuv), (s, sv, su, suv), du)
     else:
         svv = scale(0.0 * dv, no_lanes())
     return whole, add_scaled(su, dv, suv), add_scaled(sv, du, suv), suu, suv, svv

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.bspline import (
     WORK_SHAPE,
+    FourLanes,
     SurfaceData,
     any_derivatives,
     clamp_parameter,
@@ -18,6 +19,7 @@ from toolaxis.numeric.bspline import (
     extend_six,
     find_span,
     store_six,
+    store_slopes,
     weights_of,
 )
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
@@ -26,7 +28,6 @@ from toolaxis.numeric.lanes import Lanes, add_scaled, lane, load_lanes, no_lanes
 Array = NDArray[np.float64]
 Four: TypeAlias = tuple[float, float, float, float]
 Rows: TypeAlias = tuple[Four, Four, Four]
-FourLanes: TypeAlias = tuple[Lanes, Lanes, Lanes, Lanes]
 
 #: Columns of a span that is kept: its six knots, the first one of them two below its beginning, five shares, and where
 #: parameters of the domain belong to another one.
@@ -216,6 +217,4 @@ def walk_slopes(data: SurfaceData, u: float, v: float, out: Array, walk: Surface
         suv, du, dv = _combine(q, b), u - uc, v - vc
         s = add_scaled(add_scaled(add_scaled(s, du, su), dv, sv), du * dv, suv)
         su, sv = add_scaled(su, dv, suv), add_scaled(sv, du, suv)
-    out[0, 0], out[0, 1], out[0, 2] = lane(s, 0), lane(s, 1), lane(s, 2)
-    out[1, 0], out[1, 1], out[1, 2] = lane(su, 0), lane(su, 1), lane(su, 2)
-    out[2, 0], out[2, 1], out[2, 2] = lane(sv, 0), lane(sv, 1), lane(sv, 2)
+    store_slopes(s, su, sv, out)

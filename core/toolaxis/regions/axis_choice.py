@@ -102,28 +102,40 @@ def choose_axes(options: Sequence[Sequence[AxisTime]], used: Collection[int], mo
 
 def _cost(seconds: Array, price: Array, held: Bools) -> float:
     """Time of all surfaces with the axes that are held, index moves included, s."""
-    return float(np.where(held, seconds, np.inf).min(axis=1).sum() + price[held].sum())
+    return float(_least(seconds, held).sum() + price[held].sum())
 
 
 def _improve_choice(seconds: Array, price: Array, held: Bools) -> Bools:
     """Axes that are held, (k,), better by single steps until none of these saves time."""
-    while True:
-        own = np.where(held, seconds, np.inf)
-        order = np.sort(own, axis=1)
-        first, second = order[:, 0], np.minimum(order[:, 1] if order.shape[1] > 1 else np.inf, _NEVER)
-        # What surfaces take without each of the axes that are held, and without dropping any, (1 + held, surfaces).
-        dropped = np.flatnonzero(held)
-        without = np.vstack([first, *(np.where(own.argmin(axis=1) == k, second, first) for k in dropped)])
-        saved = np.append(0.0, price[dropped])
-        # The last column adds none.
-        added = np.stack([np.minimum(one[:, None], seconds).sum(axis=0) + np.where(held, np.inf, price)
-                          for one in without])
-        costs = np.hstack([added, without.sum(axis=1)[:, None]]) - saved[:, None]
-        step = np.unravel_index(costs.argmin(), costs.shape)
-        if costs[step] >= first.sum() - _LEAST_SAVED:
-            return held
+    while (step := _best_step(seconds, price, held)) is not None:
         held = held.copy()
-        if step[0] > 0:
-            held[dropped[step[0] - 1]] = False
-        if step[1] < len(held):
-            held[step[1]] = True
+        held[[axis for axis in step if axis is not None]] ^= True
+    return held
+
+
+def _best_step(seconds: Array, price: Array, held: Bools) -> tuple[int | None, int | None] | None:
+    """Which axis to drop and which to add, one of them or both, to save most time; None where no step saves any."""
+    dropped = [int(axis) for axis in np.flatnonzero(held)]
+    # Rows: no axis is dropped, or each of those that are held.
+    left = np.vstack([_least(seconds, held), *(_least(seconds, _without(held, axis)) for axis in dropped)])
+    unpaid = np.append(0.0, price[dropped])
+    # Columns: each axis is added, or none.
+    cost = np.empty((len(left), len(held) + 1))
+    for row, times in enumerate(left):
+        cost[row, :-1] = np.minimum(times[:, None], seconds).sum(axis=0) + np.where(held, np.inf, price)
+        cost[row, -1] = times.sum()
+    cost -= unpaid[:, None]
+    if cost.min() >= cost[0, -1] - _LEAST_SAVED:
+        return None
+    best, added = divmod(int(cost.argmin()), len(held) + 1)
+    return dropped[best - 1] if best else None, added if added < len(held) else None
+
+
+def _without(held: Bools, axis: int) -> Bools:
+    """Axes that are held, one of them dropped."""
+    return np.asarray(held & (np.arange(len(held)) != axis))
+
+
+def _least(seconds: Array, held: Bools) -> Array:
+    """The time of each surface with the quickest of the axes that are held, s."""
+    return np.asarray(seconds[:, held].min(axis=1, initial=_NEVER))

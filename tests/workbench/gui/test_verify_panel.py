@@ -47,10 +47,10 @@ def orange(verdict, name):
     """How many points of a map are painted as above what is accepted."""
     import numpy as np
     from freecad.toolaxis.document.colour_scale import ABOVE, judged
-    from freecad.toolaxis.document.verdict_maps import accepted, limit_of
+    from freecad.toolaxis.document.verdict_maps import greatest_accepted, limit_of
 
     one, = verdict.maps[:1]
-    rgb = judged(getattr(one, name), limit_of(verdict, name), accepted(verdict, name), one.declared)
+    rgb = judged(getattr(one, name), limit_of(verdict, name), greatest_accepted(verdict, name), one.declared)
     return int((rgb == np.array(ABOVE)).all(axis=1).sum())
 
 

@@ -27,8 +27,8 @@ class ReckonedFace(NamedTuple):
 
 
 @dataclass(frozen=True)
-class FirstRound:
-    """What the choice of tools said of the faces of a part.
+class ReckonedTimes:
+    """What the choice of tools said that the faces of a part take.
 
     Attributes
     ----------
@@ -52,9 +52,9 @@ class FirstRound:
             if chosen.tools:
                 self.reckoned.setdefault(face.number, []).append(ReckonedFace(chosen.tools[0], tuple(chains)))
 
-    def with_other_tools(self, made: Sequence[Operation], inputs: PlanInputs,
-                         allowed: Collection[int]) -> dict[int, list[int]]:
-        """The faces that smaller tools may take less time for than was made, by the first of these tools.
+    def find_slow_faces(self, made: Sequence[Operation], inputs: PlanInputs,
+                        allowed: Collection[int]) -> dict[int, list[int]]:
+        """The faces whose operations take much longer than smaller tools may, by the first of these tools.
 
         Parameters
         ----------

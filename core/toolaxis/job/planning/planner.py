@@ -47,6 +47,7 @@ from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
 from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds
 from toolaxis.regions.machined_beside import take_machined_beside
 from toolaxis.regions.scene import ReachScene
+from toolaxis.regions.tool_choice import AxisTime
 from toolaxis.search.face_problem import FaceProblem
 from toolaxis.search.face_problem import task as search_task
 from toolaxis.search.infeasibility import tight_fillet
@@ -419,8 +420,11 @@ class PlanningJob:
         used = [*self.known_axes, *(op.orientation.axis for op in done if op.orientation.axis is not None)]
         rate = self.inputs.at_rates_of(self.tool).feedrate / 60
         open_ = [target for some in pieces.values() for target in some if target.ended is None]
-        shared, cancelled = share_axes(open_, used, lambda face, axes, own, inner: reckon_axes(
-            self.task(face, inner), scene, axes, own, rate, INDEX_SECONDS), self.workers, progress)
+
+        def _reckon(face: Face, axes: Array, own: int, inner: Progress) -> tuple[AxisTime, ...]:
+            return reckon_axes(self.task(face, inner), scene, axes, own, rate, INDEX_SECONDS)
+
+        shared, cancelled = share_axes(open_, used, _reckon, self.workers, progress)
         given = dict(zip(map(id, open_), shared, strict=True))
         return {k: [given.get(id(one), one) for one in some] for k, some in pieces.items()}, cancelled
 

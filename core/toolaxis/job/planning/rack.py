@@ -12,7 +12,7 @@ from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_
 from toolaxis.job.planning.face_copies import refuse_copy
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.held_side import cut_face
-from toolaxis.job.planning.other_tools import FirstRound, takes_less_time, tools_of
+from toolaxis.job.planning.other_tools import ReckonedTimes, takes_less_time, tools_of
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob, with_fault
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
@@ -78,8 +78,8 @@ class RackPlanner:
     #: What failed that is of no single sub-surface.
     _faults: list[Fault] = field(default_factory=list)
     _steps: Counter[str] = field(default_factory=Counter)
-    #: What the choice of tools said of faces.
-    _first_round: FirstRound = field(default_factory=FirstRound)
+    #: What the choice of tools said that faces take.
+    _reckoned: ReckonedTimes = field(default_factory=ReckonedTimes)
 
     def plan(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces.
@@ -96,11 +96,7 @@ class RackPlanner:
             Tool by tool; "complete" where next to nothing of the faces stays open.
         """
         try:
-            self._begin(faces, progress)
-            for tool, job in enumerate(self.jobs):
-                if not self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name)):
-                    break
-            else:
+            if self._with_all_tools(faces, progress):
                 self._try_other_tools(faces, progress.within("other tools"))
                 self._take_skins_apart(faces, progress.within("faces one by one"))
                 return self._put_together("")
@@ -111,6 +107,12 @@ class RackPlanner:
                 if one.left_by:
                     self._rests += _rests_not_begun(one, one.area)
             return self._put_together("cancelled")
+
+    def _with_all_tools(self, faces: Sequence[Face], progress: Progress) -> bool:
+        """Plan faces with the tools that are chosen for them; False where the user stopped it."""
+        self._begin(faces, progress)
+        return all(self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name))
+                   for tool, job in enumerate(self.jobs))
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
         """Choose the tools for whole faces."""
@@ -146,7 +148,7 @@ class RackPlanner:
         if self.most is not None and not self._used:
             self._used = {len(self.jobs) - 1}
         for face, chain, others in zip(screened, chosen, chains, strict=True):
-            self._first_round.add((face, *(one.face for one in copies[face])), chain, others)
+            self._reckoned.add((face, *(one.face for one in copies[face])), chain, others)
         self._wait_or_refuse(screened, chosen, copies, progress)
 
     def _wait_or_refuse(self, faces: Sequence[Face], chains: Sequence[ToolChain],
@@ -221,7 +223,7 @@ class RackPlanner:
     def _with_tool(self, tool: int, progress: Progress) -> bool:
         """Plan what waits for a tool; False where the user stopped it."""
         merged = merge_waiting([one for one in self._waiting if one.tool == tool])
-        now = {self._name(one): one for one in self._share_axes(merged, tool)}
+        now = {self._name(one): one for one in self._choose_axes(merged, tool)}
         self._waiting = [one for one in self._waiting if one.tool != tool]
         targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
@@ -243,7 +245,7 @@ class RackPlanner:
             self._count_unfinished(now, made.operations)
         return False
 
-    def _share_axes(self, some: Sequence[WaitingSurface], tool: int) -> list[WaitingSurface]:
+    def _choose_axes(self, some: Sequence[WaitingSurface], tool: int) -> list[WaitingSurface]:
         """Surfaces that wait for a tool, each with the axis that lets all of them take least time together."""
         used = self._screen.numbers_of(self._axes_under(tool))
         reckoned = [one for one in some if one.axes]
@@ -407,11 +409,12 @@ class RackPlanner:
     def _try_other_tools(self, faces: Sequence[Face], progress: Progress) -> None:
         """Plan faces once more that other tools may take much less time for, and keep what is better."""
         inputs = self.jobs[0].inputs
-        for first, numbers in self._first_round.with_other_tools(self._done, inputs, self._allowed).items():
+        for first, numbers in self._reckoned.find_slow_faces(self._done, inputs, self._allowed).items():
             other = RackPlanner([self.jobs[k] for k in sorted(self._allowed) if k >= first])
             again = [face for face in faces if face.number in numbers]
-            if other.plan(again, progress).outcome == "cancelled":
+            if not other._with_all_tools(again, progress):
                 raise Cancelled("cancelled by the user")
+            self._faults += other._faults
             for face in again:
                 own, rows = ([op for op in some if op.face.number == face.number] for some in (self._done, other._done))
                 elsewhere = tools_of(op for op in self._done if op.face.number != face.number)

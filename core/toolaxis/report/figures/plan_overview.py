@@ -15,6 +15,7 @@ from toolaxis.numeric.vectors import unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.report.figures.hatch_fill import hatch, hatch_patch, zone_faces
+from toolaxis.report.figures.label_places import LabelPlaces, join_labels
 from toolaxis.report.figures.map_colouring import COLOURS, colour_map
 from toolaxis.report.figures.plots import bare, cutting_lines, figure, scale_bar
 from toolaxis.report.figures.splat_renderer import Canvas, camera, face_splats, mean_direction, visible_runs
@@ -30,10 +31,8 @@ _LIFT = 3
 _COVERED = 0.995
 #: Width and height of a label of a sub-surface without an axis, in widths of the picture.
 _NEAR = np.array([0.14, 0.03])
-#: Points of the page in an inch, width and height of a letter of a label, points, and how many times farther from its
-#: place, and how much turned about it, rad, a label stands that has no room.
-_POINTS, _WIDE_LETTER, _HIGH_LETTER = 72.0, 8.5, 12.0
-_FARTHER, _TURNS = (1.0, 1.7, 2.4, 3.2), tuple(np.radians([40, -40, 80, -80, 120, -120, 180]))
+#: Width of the picture, inches, and points in an inch.
+_WIDTH, _POINTS = 9.0, 72.0
 _PART, _NO_AXIS = (0.86, 0.86, 0.86), (0.56, 0.56, 0.56)
 
 
@@ -80,13 +79,13 @@ def overview_picture(plan: Plan) -> Figure:
     canvas.close()
     for faces, size in _left(plan):
         hatch(canvas, faces, 0.01 * size + highest)
-    made = figure(9.0, 9.0 * seen.shape[0] / seen.shape[1] + 0.5)
+    made = figure(_WIDTH, _WIDTH * seen.shape[0] / seen.shape[1] + 0.5)
     ax = made.subplots()
     ax.imshow(canvas.colour, origin="lower", extent=seen.extent, interpolation="nearest")
     feet, tips = seen.project(roots)[:, :2], seen.project(heads)[:, :2]
     at_feet = _apart(feet) > _apart(tips)
     lost: dict[int, Array] = {}
-    labels = LabelPlaces(_POINTS * 9.0 / (seen.extent[1] - seen.extent[0]))
+    labels = LabelPlaces(_POINTS * _WIDTH / (seen.extent[1] - seen.extent[0]))
     for op, foot, tip in zip(operations, feet, tips, strict=True):
         _passes(ax, canvas, op)
         _borders(ax, canvas, op)
@@ -182,71 +181,6 @@ def _borders(ax: Axes, canvas: Canvas, op: Operation) -> None:
 def _apart(places: Array) -> float:
     """How near the two nearest of (n, 2) places are."""
     return float(cKDTree(places).query(places, k=2)[0][:, 1].min()) if len(places) > 1 else 0.0
-
-
-def join_labels(places: dict[int, Array], near: Array) -> list[tuple[list[int], Array]]:
-    """Numbers that share a label, as labels of their own would lie on each other.
-
-    Parameters
-    ----------
-    places : dict of int to (2,) array
-        Where the label of each number would be written.
-    near : (2,) array
-        Width and height of a label.
-
-    Returns
-    -------
-    list of numbers and (2,) array
-        Those of each label, and where it is written: at the place of the first of them.
-    """
-    found: list[tuple[list[int], Array]] = []
-    for number, place in places.items():
-        taken = next((numbers for numbers, other in found if (abs(place - other) < near).all()), None)
-        if taken is None:
-            found.append(([number], place))
-        else:
-            taken.append(number)
-    return found
-
-
-class LabelPlaces:
-    """Where labels stand in a picture, none on another one as far as there is room.
-
-    Parameters
-    ----------
-    scale : float
-        Points of the page for each mm of the picture.
-    """
-
-    def __init__(self, scale: float) -> None:
-        self._scale = scale
-        self._taken: list[Array] = []
-
-    def find(self, words: str, place: Array, offset: Array) -> Array:
-        """The offset of a label from its place, (2,) in points: the one that is wished for, else the nearest free one.
-
-        Parameters
-        ----------
-        words : str
-        place : (2,) array
-            mm
-        offset : (2,) array
-            Wished for, in points.
-        """
-        half = np.array([_WIDE_LETTER * len(words), _HIGH_LETTER]) / 2
-        first, length = float(np.arctan2(offset[1], offset[0])), float(np.linalg.norm(offset))
-        ways = [(times * length, first + turn) for times in _FARTHER for turn in _TURNS]
-        offsets = [offset, *(far * np.array([np.cos(turn), np.sin(turn)]) for far, turn in ways)]
-        boxes = [np.concatenate([self._scale * place + one, half]) for one in offsets]
-        free = (k for k, box in enumerate(boxes) if not any(_meet(box, other) for other in self._taken))
-        best = next(free, 0)
-        self._taken.append(boxes[best])
-        return np.asarray(offsets[best])
-
-
-def _meet(one: Array, other: Array) -> bool:
-    """Whether two boxes, each of middle and half sides, (4,), overlap."""
-    return bool((abs(one[:2] - other[:2]) < one[2:] + other[2:]).all())
 
 
 def _arrow(ax: Axes, op: Operation, ends: tuple[Array, Array], at_foot: bool, labels: LabelPlaces) -> None:

@@ -55,7 +55,7 @@ def drawn(verdict, frame):
         rows = _rows_of(mesh, points)
         values = _values(some, name)[rows]
         aside = _values(some, "declared")[rows].astype(bool) if name == "remaining" else None
-        rgb = judged(values, limit_of(verdict, name), accepted(verdict, name), aside)
+        rgb = judged(values, limit_of(verdict, name), greatest_accepted(verdict, name), aside)
         colours = [(r / 255, g / 255, b / 255, 0.0) for r, g, b in rgb.tolist()]
         made.append(MapMesh(mesh, values.tolist(), colours))
     return made
@@ -102,7 +102,7 @@ def keep(operation, verdict, frame, maps=None):
     _figures(operation, verdict, back)
     meshes = [_mesh(operation, name) for name, _, _ in _MAPS]
     for thing, one, (name, what, text) in zip(meshes, maps or drawn(verdict, frame), _MAPS, strict=True):
-        _paint(thing, one, (limit_of(verdict, what), accepted(verdict, what)))
+        _paint(thing, one, (limit_of(verdict, what), greatest_accepted(verdict, what)))
         thing.Label = f"{name} {operation.Label}"
         thing.Shows = text
         passes = next(one for one in operation.Group if one.isDerivedFrom("Path::Feature"))
@@ -164,7 +164,7 @@ def limit_of(verdict, name):
     return verdict.scallop_limit if name == "remaining" else verdict.gouge_allowed
 
 
-def accepted(verdict, name):
+def greatest_accepted(verdict, name):
     """The greatest value of a map that the judge accepts, mm.
 
     Parameters
@@ -191,7 +191,7 @@ def places_above(verdict):
     -------
     (bool, bool)
     """
-    most = accepted(verdict, "remaining")
+    most = greatest_accepted(verdict, "remaining")
     rows = [(one.weight, ~one.declared & (one.remaining > most)) for one in shown_of(verdict, "remaining")]
     return any((above & (weight > 0)).any() for weight, above in rows), any(
         (above & (weight == 0)).any() for weight, above in rows)

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 from freecad.toolaxis.document.children import child
-from freecad.toolaxis.document.verdict_maps import accepted, drawn, limit_of, places_above, shown_of
+from freecad.toolaxis.document.verdict_maps import drawn, greatest_accepted, limit_of, places_above, shown_of
 from freecad.toolaxis.gui.axis_map.result_rows import fill
 from freecad.toolaxis.gui.play.nodes import view_of
 from freecad.toolaxis.gui.verify.colour_bar import Scale
@@ -148,7 +148,7 @@ class VerifyPanel(Panel):
             return
         verdict, skins = chosen
         what = WHAT[form.what.currentIndex()]
-        limits = limit_of(verdict, what), accepted(verdict, what)
+        limits = limit_of(verdict, what), greatest_accepted(verdict, what)
         self.scale.show_scale(form.what.currentText(), limits, what == "remaining")
         self.paint.show(skins[what], what, limits)
         fill(form.results, [("", _measures(verdict))])
@@ -227,7 +227,7 @@ def _measures(verdict):
     return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
             (translate("ToolAxis", "Left to clean-up"), f"{100 * verdict.declared / verdict.area:.1f} %"),
-            (translate("ToolAxis", "Of the rest within {}").format(fine_text(accepted(verdict, "remaining"))),
+            (translate("ToolAxis", "Of the rest within {}").format(fine_text(greatest_accepted(verdict, "remaining"))),
              share_text(verdict)),
             (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
             (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),
