@@ -279,7 +279,8 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _
     step, along = steps[line], points.along
     exact = _widths(chart, cut, few.along, steps[found.line[few.interval]])
     second = limit_screen(chart, cut, few.along, steps[found.line[few.interval]])
-    ratio = np.where((exact > 0) & (second > 0), exact / np.where(second > 0, second, 1.0), 1.0)
+    known = (exact > 0) & (second > 0) & np.isfinite(second)
+    ratio = np.where(known, exact / np.where(known, second, 1.0), 1.0)
     guess = limit_screen(chart, cut, along, step) * np.interp(_flat(found, points), _flat(found, few), ratio)
     place, row, own = _candidates(*beyond.added(points, line, guess, steps))
     row, place = np.append(found.line[few.interval], row), np.append(few.along, place)
