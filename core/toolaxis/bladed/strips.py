@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
 from toolaxis.shape.kinks import letters
@@ -44,7 +45,7 @@ def strips(face: Face, most: float) -> tuple[Face, ...]:
         raise InvalidInput(f"greatest turn of normals is {most} rad: it must be above zero")
     u0, u1, v0, v1 = face.bounds
     lines = np.linspace(u0, u1, _FINE + 1), np.linspace(v0, v1, _FINE + 1)
-    uv = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_rows(*lines)
     normals = face.normal(uv).reshape(_FINE + 1, _FINE + 1, 3)
     on = face.contains(uv).reshape(_FINE + 1, _FINE + 1)
     turns = [_turn(np.moveaxis(normals, axis, 0), np.moveaxis(on, axis, 0)) for axis in (0, 1)]

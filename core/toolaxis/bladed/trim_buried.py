@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
+from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.polygon_boolean import divide_polygon
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
@@ -202,7 +203,7 @@ def _less(face: Face, solid: Solid) -> list[Face]:
 def _sides(face: Face) -> Array:
     """Greatest lengths of a face's bounds along u and v, (2,) mm."""
     u0, u1, v0, v1 = face.bounds
-    nodes = np.stack(np.meshgrid(np.linspace(u0, u1, 40), np.linspace(v0, v1, 40), indexing="ij"), axis=-1)
+    nodes = grid_nodes(np.linspace(u0, u1, 40), np.linspace(v0, v1, 40))
     points = face.evaluate(nodes.reshape(-1, 2)).point.reshape(40, 40, 3)
     return np.array([np.linalg.norm(np.diff(points, axis=k), axis=2).sum(axis=k).max() for k in (0, 1)])
 
@@ -211,7 +212,7 @@ def _depth(face: Face, solid: Solid, lines: tuple[Array, Array]) -> Array:
     """How deep the nodes of a grid lie in a body, (m, n) mm: exact at its border; below zero off the face."""
     from scipy.ndimage import binary_dilation, label
 
-    nodes = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
+    nodes = grid_nodes(*lines)
     shape, rows = nodes.shape[:2], nodes.reshape(-1, 2)
     on = face.evaluate(rows).point
     cell = max(float(np.linalg.norm(np.diff(on.reshape(*shape, 3), axis=k), axis=2).max()) for k in (0, 1))

@@ -18,6 +18,7 @@ from toolaxis.cad.kernel_protocol import (
 from toolaxis.cad.rational_arcs import ParameterMap, angle_breaks, arc_knots
 from toolaxis.errors import UnsupportedGeometry
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.knots import restrict_spline, unroll_periodic
 
 Array = NDArray[np.float64]
@@ -176,7 +177,7 @@ def _clamp_direction(knots: Array, net: Array, degree: int, periodic: bool, need
 def grid(box: Box, count: int) -> Array:
     """Evenly spread parameters of a box, borders included, (count^2, 2)."""
     u, v = np.linspace(*box[:2], count), np.linspace(*box[2:], count)
-    return np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    return grid_rows(u, v)
 
 
 def _approximation(surface: KernelSurface, box: Box) -> PlainSurface:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import lengths
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
@@ -97,8 +98,8 @@ class NormalCells:
             self._child = np.concatenate([self._child, np.full((len(made.rect), 2), -1, dtype=np.intp)])
             self._cells = TrimmedFaceCells(*(np.concatenate(both) for both in zip(self._cells, made, strict=True)))
         first, count = self._child[kept].T
-        within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
-        numbers = np.repeat(first, count) + within
+        row, within = number_parts(count)
+        numbers = first[row] + within
         return numbers, self._cells.chosen(numbers)
 
     def _first(self) -> TrimmedFaceCells:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.normal_cells import NormalCells
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.smallest_cap import Cap, smallest_cap
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
@@ -172,6 +173,6 @@ def _along(loop: Array, count: int) -> Array:
     size = np.ptp(loop, axis=0)
     length = np.linalg.norm((ends - loop) / np.where(size > 0, size, 1.0), axis=1)
     parts = np.maximum(np.ceil(count * length / max(length.sum(), 1e-300)).astype(int), 1)
-    edge = np.repeat(np.arange(len(loop)), parts)
-    share = np.concatenate([np.arange(k) / k for k in parts])
-    return np.asarray(loop[edge] + share[:, None] * (ends[edge] - loop[edge]))
+    edge, number = number_parts(parts)
+    share = (number / parts[edge])[:, None]
+    return np.asarray(loop[edge] + share * (ends - loop)[edge])

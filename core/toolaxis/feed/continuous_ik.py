@@ -17,6 +17,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import linear_coordinates, placement, rotary_angles, tool_axes
 from toolaxis.machine.machine import Machine
 from toolaxis.numeric.jit import jit
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]
@@ -165,11 +166,17 @@ def _track_path(machine: Machine, path: ToolPath, place: ArrayLike | None,
 def _divide_gaps(tips: Array, axes: Array, arrival: NDArray[np.int64],
                  parts: NDArray[np.int64]) -> tuple[Array, Array, NDArray[np.int64]]:
     """Points put between those whose gaps are in parts, on the straight ways of tips and axes."""
-    owner = np.repeat(np.arange(len(parts)), parts)
-    share = ((np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 1) / parts[owner])[:, None]
-    new = [np.concatenate([rows[:1], np.where(share < 1, rows[owner] + share * (rows[owner + 1] - rows[owner]),
-                                              rows[owner + 1])]) for rows in (tips, axes)]
-    return new[0], np.asarray(unit(new[1])), np.concatenate([arrival[:1], arrival[owner + 1]])
+    owner, number = number_parts(parts)
+    share = ((number + 1) / parts[owner])[:, None]
+
+    def divide(rows: Array) -> Array:
+        before = rows[owner]
+        after = rows[owner + 1]
+        between = before + share * (after - before)
+        return np.concatenate([rows[:1], np.where(share < 1, between, after)])  # points that were given stay exact
+
+    arrivals = np.concatenate([arrival[:1], arrival[owner + 1]])
+    return divide(tips), np.asarray(unit(divide(axes))), arrivals
 
 
 def _follow_nearest(machine: Machine, axes: Array, place: ArrayLike | None, begin: Array) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.clipping import clip_half_plane, outer_with_holes
+from toolaxis.numeric.grids import grid_nodes, grid_rows
 from toolaxis.numeric.polygons import polygon_area
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.shape.face import Face
@@ -37,14 +38,14 @@ class Lattice:
         """Parameters u and v of the lines, (nu + 1,) and (nv + 1,)."""
         u0, u1, v0, v1 = self.face.bounds
         u, v = np.linspace(u0, u1, _FINE + 1), np.linspace(v0, v1, _FINE + 1)
-        points = self.face.evaluate(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)).point
+        points = self.face.evaluate(grid_rows(u, v)).point
         net = points.reshape(_FINE + 1, _FINE + 1, 3)
         return _even(u, net, self.cells[0]), _even(v, net.swapaxes(0, 1), self.cells[1])
 
     @cached_property
     def uv(self) -> Array:
         """Parameters of the nodes, (nu + 1, nv + 1, 2)."""
-        return np.stack(np.meshgrid(*self.lines, indexing="ij"), axis=-1)
+        return grid_nodes(*self.lines)
 
     @cached_property
     def points(self) -> Array:
@@ -67,7 +68,7 @@ class Lattice:
         found = np.zeros(self.uv.shape[:2], dtype=bool)
         for u in places[0]:
             for v in places[1]:
-                uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+                uv = grid_rows(u, v)
                 found |= self.face.contains(uv).reshape(found.shape)
         return found & (np.linalg.norm(self.normals, axis=-1) > 0.5)
 
@@ -101,7 +102,7 @@ class Lattice:
     def areas(self) -> Array:
         """Area of the face in each cell, (nu, nv) mm^2, from the middle of the cell."""
         u, v = ((line[1:] + line[:-1]) / 2 for line in self.lines)
-        d = self.face.evaluate(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+        d = self.face.evaluate(grid_rows(u, v))
         size = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(self.cells)
         return np.asarray(size * np.diff(self.lines[0])[:, None] * np.diff(self.lines[1]) * self.filled)
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.placement import tips
 from toolaxis.numeric.blocks import in_blocks
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import unit
 from toolaxis.path.parametrization import Chart, Cut, tip_points
 
@@ -124,10 +125,10 @@ def _between(begin: Array, end: Array) -> Array:
 
 
 def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:
-    source = np.repeat(np.arange(len(owner)), parts)
-    place = np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)
+    source, number = number_parts(parts)
     gap = ((high - low) / parts)[source]
-    return owner[source], low[source] + place * gap, low[source] + (place + 1) * gap
+    begin = low[source]
+    return owner[source], begin + number * gap, begin + (number + 1) * gap
 
 
 def _deviations(chart: Chart, cut: Cut, probes: Array, low: Array, high: Array, step: Array) -> Array:

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.parts import number_parts
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -77,6 +78,6 @@ def _divide(loop: Array, size: Array) -> Array:
     """Corners of a closed loop, and even points between them, no farther apart than a size (2,) each way."""
     ahead = np.roll(loop, -1, axis=0)
     parts = np.maximum(np.ceil((np.abs(ahead - loop) / size).max(axis=1)), 1).astype(int)
-    source = np.repeat(np.arange(len(loop)), parts)
-    share = (np.arange(len(source)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[source]
-    return np.asarray(loop[source] + share[:, None] * (ahead - loop)[source])
+    source, number = number_parts(parts)
+    share = (number / parts[source])[:, None]
+    return np.asarray(loop[source] + share * (ahead - loop)[source])

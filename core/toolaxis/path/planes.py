@@ -11,6 +11,7 @@ from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import InvalidInput, UnsupportedGeometry
+from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.path.cl_points import trace
 from toolaxis.path.free_chart import FreeChart
@@ -105,7 +106,7 @@ class PlaneChart(FreeChart):
     @cached_property
     def _grid(self) -> tuple[Array, cKDTree]:
         u0, u1, v0, v1 = self.face.bounds
-        uv = np.stack(np.meshgrid(np.linspace(u0, u1, _GRID + 1), np.linspace(v0, v1, _GRID + 1), indexing="ij"), -1)
+        uv = grid_nodes(np.linspace(u0, u1, _GRID + 1), np.linspace(v0, v1, _GRID + 1))
         uv = uv.reshape(-1, 2)
         uv = uv[self.face.normal(uv) @ self.axis > _SEEN]  # beyond a trimmed face its surface may turn away
         return uv, cKDTree(self.face.evaluate(uv).point @ self.frame.T)

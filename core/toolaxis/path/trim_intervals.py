@@ -6,8 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.parts import number_parts
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
+
 
 class Intervals(NamedTuple):
     """Pieces of parallel lines that lie on the face, sorted by line and place.
@@ -71,9 +74,8 @@ def row_points(rows: Intervals, spacing: float, least: int = 4) -> RowPoints:
     """
     length = rows.high - rows.low
     gaps = np.maximum(np.ceil(length / spacing - 1e-9).astype(np.int64), least)
-    interval = np.repeat(np.arange(len(gaps)), gaps + 1)
-    first = np.cumsum(gaps + 1) - (gaps + 1)
-    share = (np.arange(len(interval)) - first[interval]) / gaps[interval]
+    interval, number = number_parts(gaps + 1)
+    share = number / gaps[interval]
     along = rows.low[interval] * (1 - share) + rows.high[interval] * share
     return RowPoints(interval, along)
 

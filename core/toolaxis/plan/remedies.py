@@ -12,6 +12,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.tolerances import GREATEST
@@ -199,7 +200,7 @@ def _longer(plan: Plan, lost: Sequence[Operation], share: float) -> list[Remedy]
 def _points_of(op: Operation) -> tuple[Array, Array]:
     """Points of a face, (n, 3) mm, and its mean normal."""
     side = np.linspace(0.0, 1.0, _SIDE)
-    uv = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_rows(side, side)
     inside = uv[op.face.contains(uv)]
     uv = inside if len(inside) else uv
     mean = op.face.normal(uv).mean(axis=0)

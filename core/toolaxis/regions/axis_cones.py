@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.vectors import angle_between, unit
 
 Array = NDArray[np.float64]
@@ -123,7 +124,7 @@ def first_cones() -> AxisCones:
     """Cones over the whole sphere, each some 15 degrees wide."""
     half = np.pi / 4 / _FIRST
     line = half * (2 * np.arange(_FIRST) + 1) - np.pi / 4
-    place = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    place = grid_rows(line, line)
     return AxisCones(np.repeat(np.arange(6), len(place)), np.tile(place, (6, 1)), np.full(6 * len(place), half))
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.path.rest_material import Excess, RestFinder, may_stay, undercut
@@ -112,7 +113,7 @@ class _Rest:
         counts = [max(int(np.ceil(side / size)), _FEWEST_ALONG) for side in (along, across)]
         u, v = (_middles(line) for line in Lattice(face, (counts[0], counts[1])).lines)
         self._face, self._lines = face, (u, v)
-        middles = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+        middles = grid_nodes(u, v)
         self._on = face.contains(middles.reshape(-1, 2)).reshape(middles.shape[:2])
         self._taken = np.zeros_like(self._on)
         self.loops: Loops = face.outline

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.partition.uv_grid import Lattice
 from toolaxis.progress import breathe
@@ -74,8 +75,8 @@ class FaceRectangles:
 
 def first_rectangles(face: Face) -> FaceRectangles:
     u, v = Lattice(face, _shape_for(face)).lines
-    middle = np.stack(np.meshgrid((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
-    half = np.stack(np.meshgrid(np.diff(u) / 2, np.diff(v) / 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    middle = grid_rows((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2)
+    half = grid_rows(np.diff(u) / 2, np.diff(v) / 2)
     return _measure(face, middle, half, face.area)[0]
 
 
@@ -98,7 +99,7 @@ def halve_rectangles(face: Face, cells: FaceRectangles) -> tuple[FaceRectangles,
 
 def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[FaceRectangles, Bools]:
     """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
-    ways = np.stack(np.meshgrid(_PLACES, _PLACES, indexing="ij"), axis=-1).reshape(-1, 2)
+    ways = grid_rows(_PLACES, _PLACES)
     inside = face.contains((middle[:, None] + _WITHIN * ways * half[:, None]).reshape(-1, 2)).reshape(-1, 9)
     kept = np.asarray(inside.any(axis=1))
     middle, half, inside = middle[kept], half[kept], inside[kept]
@@ -120,7 +121,7 @@ def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[FaceR
 
 def is_as_measured(face: Face, cells: FaceRectangles) -> Bools:
     """Whether cells reach no farther, and their normals turn no more, at many places than was told from nine, (n,)."""
-    ways = np.stack(np.meshgrid(_CHECKED, _CHECKED, indexing="ij"), axis=-1).reshape(-1, 2)
+    ways = grid_rows(_CHECKED, _CHECKED)
     found = np.ones(len(cells), dtype=bool)
     for first in range(0, len(cells), _AT_ONCE):
         breathe()

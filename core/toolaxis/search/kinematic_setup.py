@@ -20,6 +20,7 @@ from toolaxis.errors import InvalidInput, UnsupportedGeometry
 from toolaxis.machine.feed_polytopes import Level, along, best_angles
 from toolaxis.machine.kinematics import nearest_turn, placement, tool_axes
 from toolaxis.machine.setup import Mounting
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import as_rows, unit
 
@@ -381,7 +382,7 @@ def rotary_grid(mounting: Mounting, step: float, middle: Array | None = None) ->
         if middle is not None:
             low, high = max(axis.low, middle[i] - 6 * step), min(axis.high, middle[i] + 6 * step)
         sides.append(np.linspace(low, high, max(1, round((high - low) / step) + 1)))
-    return np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, len(sides))
+    return grid_rows(*sides)
 
 
 def _search_grids(mounting: Mounting, level: Level, feed: Array, allowed: Callable[[Array], Bools],

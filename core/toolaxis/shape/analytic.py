@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.grids import grid_nodes
 from toolaxis.shape.nurbs import NurbsSurface
 from toolaxis.shape.surface import Derivatives, Domain
 
@@ -119,7 +120,7 @@ class PlanarSurface:
 
     def nurbs(self) -> NurbsSurface:
         """The same surface as a B-spline of degree (1, 1)."""
-        corners = np.stack(np.meshgrid(self.u_range, self.v_range, indexing="ij"), axis=-1)
+        corners = grid_nodes(self.u_range, self.v_range)
         control = np.concatenate([corners, np.zeros((2, 2, 1)), np.ones((2, 2, 1))], axis=2)
         return NurbsSurface(_line(self.u_range)[0], _line(self.v_range)[0], control, (1, 1))
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import EdgeIndex, inside, signed_area, slabs
 from toolaxis.shape import measure
 from toolaxis.shape.differential import Curvature, curvatures, degenerate, normals
@@ -235,7 +236,7 @@ class Face:
         u0, u1, v0, v1 = self.bounds
         u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
         v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
-        uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+        uv = grid_rows(u, v)
         return uv[self.contains(uv)]
 
     def places_on(self, count: int) -> Array:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import EdgeIndex, inside, slabs, stations, walk
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
@@ -173,7 +174,7 @@ class SeenFace:
         low, high = self.box
         size = (high - low) / count
         share = np.arange(count) + 0.5
-        middles = np.stack(np.meshgrid(*(low + share[:, None] * size).T, indexing="ij"), axis=-1).reshape(-1, 2)
+        middles = grid_rows(*(low + share[:, None] * size).T)
         near = self._begin(middles)
         uv, table = self._find_by_kernel(middles)
         rates = _rates_with_place(table[:, 1] @ self.rows.T, table[:, 2] @ self.rows.T)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import polygon_area, stations, walk
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
@@ -247,7 +248,7 @@ def view_surface(seen: Sequence[SeenFace], frame: Array, origin: Array, outline:
 
 def _heights(view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> Array:
     """Heights on a grid; beyond the outline those of the tangent planes of the nearest points of the faces."""
-    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = grid_rows(*lines)
     owner = view.owners(places)
     within = owner >= 0
     found = np.empty(len(places))
@@ -286,7 +287,7 @@ def _spline_through(lines: list[Array], heights: Array, frame: Array, origin: Ar
 def _worst(spline: NurbsSurface, view: FacesInView, frame: Array, origin: Array, lines: list[Array]) -> float:
     """How far a spline lies beside the faces between the points of its grid: the mean of the worst tenth, mm."""
     middle = [(line[1:] + line[:-1]) / 2 for line in lines]
-    places = np.stack(np.meshgrid(*middle, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = grid_rows(*middle)
     owner = view.owners(places)
     within = owner >= 0
     if not within.any():

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.jit import jit, jit_inline
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.verify.revolved_solids import meridian
 
@@ -173,13 +174,15 @@ class Tiles:
             return Motions(self._tip, zero, self._axis, zero, np.zeros(1, dtype=np.int64), self._kind)
         rows = low + np.flatnonzero(self._wanted[low:high])
         pieces = self._pieces[rows]
-        owner = np.repeat(rows, pieces)
-        part = np.arange(len(owner)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-        share = 1.0 / self._pieces[owner]
-        before = (part * share)[:, None]
-        step, turn = self._tip[owner + 1] - self._tip[owner], self._axis[owner + 1] - self._axis[owner]
-        return Motions(self._tip[owner] + before * step, step * share[:, None], self._axis[owner] + before * turn,
-                       turn * share[:, None], owner + 1, self._kind[owner + 1])
+        row, number = number_parts(pieces)
+        begin = rows[row]
+        end = begin + 1
+        share = (1.0 / self._pieces[begin])[:, None]
+        before = number[:, None] * share
+        step = self._tip[end] - self._tip[begin]
+        turn = self._axis[end] - self._axis[begin]
+        return Motions(self._tip[begin] + before * step, step * share, self._axis[begin] + before * turn,
+                       turn * share, end, self._kind[end])
 
 
 def _ranges(pieces: Index, most: int) -> list[tuple[int, int]]:

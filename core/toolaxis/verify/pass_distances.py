@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import dot, unit
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest import nearest
@@ -238,12 +239,13 @@ def _contact_lines(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, 
     end = end[good[end] & good[end - 1]]
     way = np.linalg.norm(point[end] - point[end - 1], axis=1)
     parts = np.maximum(np.ceil(way / dense), 1).astype(np.int64)
-    owner = np.repeat(np.arange(len(end)), parts)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 1) / parts[owner]
-    before, after = point[end[owner] - 1], point[end[owner]]
-    ways = (point[end] - point[end - 1]) / np.maximum(way, 1e-12)[:, None]
-    return (np.concatenate([point[end - 1], before + share[:, None] * (after - before)]),
-            np.concatenate([ways, ways[owner]]))
+    owner, number = number_parts(parts)
+    share = ((number + 1) / parts[owner])[:, None]
+    before = point[end - 1]
+    steps = point[end] - before
+    between = before[owner] + share * steps[owner]
+    ways = steps / np.maximum(way, 1e-12)[:, None]
+    return np.concatenate([before, between]), np.concatenate([ways, ways[owner]])
 
 
 def find_contacts(face: Face, profile: Profile, standing: tuple[Array, Array], allowance: float) -> tuple[Array, Array]:

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.grids import grid_rows
+from toolaxis.numeric.parts import number_parts
 from toolaxis.shape.face import Face
 from toolaxis.verify.kept import SizedCache
 
@@ -142,7 +144,7 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     """
     u0, u1, v0, v1 = face.bounds
     u, v = np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE)
-    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    grid = grid_rows(u, v)
     speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
     length = _lengths(v, speed_v)
     mark = length / length[-1]
@@ -217,8 +219,8 @@ def _reach_of_rows(face: Face, lines: Array) -> tuple[Array, Array]:
         first = np.clip(np.searchsorted(lines, bottom - rounding, side="right") - 1, 0, len(low) - 1)
         last = np.clip(np.searchsorted(lines, top + rounding, side="right") - 1, 0, len(low) - 1)
         crossed = last - first + 1
-        edge = np.repeat(np.arange(len(loop)), crossed)
-        row = np.repeat(first - np.cumsum(crossed) + crossed, crossed) + np.arange(len(edge))
+        edge, number = number_parts(crossed)
+        row = first[edge] + number
         np.minimum.at(low, row, left[edge])
         np.maximum.at(high, row, right[edge])
     return low, high
@@ -273,9 +275,9 @@ def loop_points(face: Face, loop: Array, spacing: float) -> Array:
     point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
     longest = (fine - 1) * np.linalg.norm(np.diff(point, axis=1), axis=2).max(axis=1)
     parts = np.maximum(1, np.ceil(longest / spacing)).astype(np.int64)
-    owner = np.repeat(np.arange(len(loop)), parts)
-    step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
-    return np.asarray(loop[owner] + step[:, None] * (ends - loop)[owner])
+    edge, number = number_parts(parts)
+    step = (number / parts[edge])[:, None]
+    return np.asarray(loop[edge] + step * (ends - loop)[edge])
 
 
 def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
@@ -295,7 +297,7 @@ def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
     u0, u1, v0, v1 = face.bounds
     way = np.minimum(size / np.maximum(scale, 1e-12), [u1 - u0, v1 - v0])
     side = np.linspace(-1.0, 1.0, count)
-    offset = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    offset = grid_rows(side, side)
     around = (uv[:, None] + offset * way[:, None]).reshape(-1, 2)
     around = np.clip(around, [u0, v0], [u1, v1])
     return np.asarray(around[face.contains(around)], dtype=np.float64)

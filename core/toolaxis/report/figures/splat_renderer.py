@@ -7,6 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
@@ -253,12 +254,12 @@ def visible_runs(canvas: Canvas, line: Array, slack: float) -> list[Array]:
     -------
     list of (m, 2) arrays
     """
-    step = 2 * canvas.camera.pixel
-    lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    count = np.clip(np.ceil(lengths / step).astype(int), 1, 4000)
-    owner = np.repeat(np.arange(len(count)), count)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)) / count[owner]
-    dense = np.vstack([line[owner] + share[:, None] * np.diff(line, axis=0)[owner], line[-1:]])
+    steps = np.diff(line, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    count = np.clip(np.ceil(lengths / (2 * canvas.camera.pixel)).astype(int), 1, 4000)
+    owner, part = number_parts(count)
+    share = (part / count[owner])[:, None]
+    dense = np.vstack([line[owner] + share * steps[owner], line[-1:]])
     seen = canvas.visible(dense, slack)
     flat = canvas.camera.project(dense)[:, :2]
     cuts = np.flatnonzero(np.diff(seen)) + 1

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.links import Linking
 from toolaxis.plan.orientation import Orientation
@@ -160,9 +161,10 @@ def _deepen_turns(ring: Ring, rows: list[tuple[Array, Array]]) -> tuple[BladeTur
 def _closer(turn: BladeTurn, layer: ScheduledLayer, swing: SwivelAxis) -> tuple[BladeTurn, Array]:
     """A turn and its tool axes, with points between those from one to the next of which the axis swings far."""
     parts = np.ceil(np.abs(np.diff(layer.theta)) / _SWING).clip(1).astype(np.int64)
-    owner = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[owner]
-    at, known = np.append(owner + share, len(parts)), np.arange(len(layer.theta))
+    owner, number = number_parts(parts)
+    share = number / parts[owner]
+    at = np.append(owner + share, len(parts))
+    known = np.arange(len(layer.theta))
 
     def _among(rows: Array) -> Array:
         return np.column_stack([np.interp(at, known, column) for column in rows.T])

@@ -19,6 +19,7 @@ from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
 from toolaxis.feasibility.violations import Violation
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.links import least_rise
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -51,11 +52,13 @@ class PathMotions(NamedTuple):
     def split(self, parts: NDArray[np.int64]) -> tuple["PathMotions", NDArray[np.intp]]:
         """Each cut into so many parts, with the number of the one that each part belongs to; axes are interpolated as
         cutter location data are, linearly."""
-        owner = np.repeat(np.arange(len(parts)), parts)
-        place = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
-        low, high = ((place + k)[:, None] / parts[owner][:, None] for k in (0, 1))
+        owner, number = number_parts(parts)
+        whole = parts[owner][:, None]
+        low = number[:, None] / whole
+        high = (number + 1)[:, None] / whole
         one = self.rows(owner)
-        tip, turn = one.end - one.start, one.after - one.before
+        tip = one.end - one.start
+        turn = one.after - one.before
         return PathMotions(one.start + low * tip, one.start + high * tip, _unit(one.before + low * turn),
                            _unit(one.before + high * turn)), owner
 

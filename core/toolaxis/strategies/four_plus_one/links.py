@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.machine.kinematics import placement, tool_axes
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.rotations import one_turn
 from toolaxis.numeric.vectors import rotation, unit
 from toolaxis.strategies.four_plus_one.passes import Clamp
@@ -54,8 +55,8 @@ def on_the_circle(path: ToolPath, clamp: Clamp) -> ToolPath:
     free = free_angles(path.axis, clamp)
     turn = np.append(0.0, np.abs(np.diff(free)))
     parts = np.where(path.kind == Motion.CUT, 1, np.maximum(np.ceil(turn / _TURN), 1)).astype(np.int64)
-    owner = np.repeat(np.arange(len(parts)), parts)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 1) / parts[owner]
+    owner, number = number_parts(parts)
+    share = (number + 1) / parts[owner]
     before = np.maximum(owner - 1, 0)
     angles = free[before] + share * (free[owner] - free[before])
     whole = share == 1

@@ -11,6 +11,7 @@ from toolaxis.contact.placement import tips
 from toolaxis.errors import InvalidInput
 from toolaxis.machine.kinematics import tool_axes
 from toolaxis.machine.machine import Machine
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import Cut
 from toolaxis.shape.face import Face
@@ -197,7 +198,7 @@ def spots(face: Face, feed: str, length: float, counts: tuple[int, int] = (10, 9
     ranges = [(low + gap, high - gap) if high - low > 2 * gap else ((low + high) / 2,) * 2
               for low, high, gap in ((u0, u1, inset[0]), (v0, v1, inset[1]))]
     u, v = (low + (high - low) * (np.arange(n) + 0.5) / n for (low, high), n in zip(ranges, counts, strict=True))
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_rows(u, v)
     ends = section_parameters(face, uv, np.linspace(-0.5, 0.5, 9) * length, feed)
     on = face.contains(ends.reshape(-1, 2)).reshape(len(uv), -1).all(axis=1)
     on &= ((ends >= [u0, v0]) & (ends <= [u1, v1])).all(axis=(1, 2))

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.clearance.gouge import least_distance, skin_cells
 from toolaxis.contact.clearance.queries import keeps_limits
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
 from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.shape.face import Face
@@ -85,8 +86,8 @@ def _check_motions(split: tuple[Tool, float, float], path: tuple[Array, Array], 
     (tool, near, far), (tips, axes), (deep, cost) = split, path, ask
     begin, end, before, after = tips[which], tips[which + 1], axes[which], axes[which + 1]
     parts = np.maximum(np.ceil(0.5001 * angle_between(before, after) * near / cost), 1).astype(np.int64)
-    owner = np.repeat(np.arange(len(which)), parts)
-    place = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / parts[owner]
+    owner, number = number_parts(parts)
+    place = (number + 0.5) / parts[owner]
     half = 0.5 / parts[owner]
     way, turn = (end - begin)[owner], (after - before)[owner]
     middle = before[owner] + place[:, None] * turn
