@@ -36,8 +36,8 @@ _OUTER = 0.01
 #: Share of the limits that the speeds are planned with; the rest is for what happens between stations.
 _PLANNED = 0.999
 
-#: Stretch above which a plan is made again with three times the stations, and the most there are at first.
-_REFINE, _MOST = 1.005, 50_000
+#: Stretch above which a plan is made again with three times the stations, the most there are then, and plans at most.
+_REFINE, _MOST, _PLANS = 1.005, 50_000, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,12 +75,14 @@ class CurveSchedule:
             s.
         """
         t = np.atleast_1d(np.asarray(times, dtype=float))
-        i = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
-        gone = t - self.times[i]
-        s, v, a = self.states[i].T
-        jerk = np.diff(self.states[:, 2])[i] / np.diff(self.times)[i]
-        return np.stack([s + gone * (v + gone * (a / 2 + gone * jerk / 6)), v + gone * (a + gone * jerk / 2),
-                         a + gone * jerk, jerk], axis=1)
+        piece = np.searchsorted(self.times, t, side="right") - 1
+        piece = np.clip(piece, 0, len(self.times) - 2)
+        gone = t - self.times[piece]
+        s, v, a = self.states[piece].T
+        jerk = np.diff(self.states[:, 2])[piece] / np.diff(self.times)[piece]
+        way = s + gone * (v + gone * (a / 2 + gone * jerk / 6))
+        velocity = v + gone * (a + gone * jerk / 2)
+        return np.stack([way, velocity, a + gone * jerk, jerk], axis=1)
 
     def at(self, times: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Positions, velocities, accelerations and jerks of the axes, (n, m) each.
@@ -91,8 +93,11 @@ class CurveSchedule:
             s.
         """
         s, v, a, j = self.path_at(times).T[:, :, None]
-        q = [self.curve(s[:, 0], order) for order in range(4)]
-        return (q[0], q[1] * v, q[1] * a + q[2] * v**2, q[1] * j + 3 * q[2] * v * a + q[3] * v**3)
+        q, qs, qss, qsss = (self.curve(s[:, 0], order) for order in range(4))
+        velocity = qs * v
+        acceleration = qs * a + qss * v**2
+        jerk = qs * j + 3 * qss * v * a + qsss * v**3
+        return q, velocity, acceleration, jerk
 
 
 def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: AxisBounds,
@@ -123,18 +128,22 @@ def schedule_curve(points: ArrayLike, tips: ArrayLike, feed: float, bounds: Axis
     Property: no axis exceeds its velocity, acceleration or jerk by more than a millionth at the sampled times.
     """
     joints, rows, along = check_path(points, tips, feed, len(bounds.velocity))
-    curve, tip = make_interp_spline(along, joints, 5), make_interp_spline(along, rows, 5)
-    limits = _limits_at(np.linspace(0.0, along[-1], 400), curve, tip, feed, bounds)
-    count = stations or _enough(float(along[-1]), limits, len(rows))
+    curve = make_interp_spline(along, joints, 5)
+    tip = make_interp_spline(along, rows, 5)
+    length = float(along[-1])
+    limits = _limits_at(np.linspace(0.0, length, 400), curve, tip, feed, bounds)
+    count = stations or _enough(length, limits, len(rows))
     plans: list[CurveSchedule] = []
-    while not plans or (stations is None and plans[-1].stretch > _REFINE and count < _MOST and len(plans) < 3):
-        s = _stations(float(along[-1]), count, limits)
-        problem = _problem(s, curve, tip, feed, bounds)
-        b = greatest_speeds(problem, _slow(problem.stations, float(along[-1]), limits))
-        motion = _join_pieces(problem.stations, b, curve, along[-1])
-        plans.append(_slow_down(motion, _excess(motion, tip, feed, bounds).by))
+    while True:
+        problem = _problem(_stations(length, count, limits), curve, tip, feed, bounds)
+        start = _slow(problem.stations, length, limits)
+        motion = _join_pieces(problem.stations, greatest_speeds(problem, start), curve, length)
+        slowed = _slow_down(motion, _excess(motion, tip, feed, bounds).by)
+        plans.append(slowed)
         count *= 3
-    return min(plans, key=lambda plan: plan.duration)
+        may_refine = stations is None and count < _MOST and len(plans) < _PLANS
+        if not may_refine or slowed.stretch <= _REFINE:
+            return min(plans, key=lambda plan: plan.duration)
 
 
 def schedule_near(points: ArrayLike, feed: float, bounds: AxisBounds, tolerance: float) -> CurveSchedule:
@@ -181,17 +190,21 @@ def schedule_near(points: ArrayLike, feed: float, bounds: AxisBounds, tolerance:
             best = slowed
         if slowed.stretch <= 1 + _EXCESS:
             break
-        problem = replace(problem, most=np.minimum(problem.most, b / found.around(problem.stations) ** 2))
+        allowed = b / found.around(problem.stations) ** 2
+        problem = replace(problem, most=np.minimum(problem.most, allowed))
     assert best is not None
     return best
 
 
 def _denser(stations: Array, curve: BSpline) -> Array:
     """Stations with more of them where the knots of a curve lie close, both ends as they are."""
-    knots, inner = np.unique(curve.t), stations[_END:-_END]
+    knots = np.unique(curve.t)
+    inner = stations[_END:-_END]
     even = float(np.diff(inner).max())
-    close = np.flatnonzero(np.diff(knots) < _IN_GAP * even)
-    more = (knots[close, None] + np.diff(knots)[close, None] * (np.arange(_IN_GAP) / _IN_GAP)).ravel()
+    gaps = np.diff(knots)
+    close = np.flatnonzero(gaps < _IN_GAP * even)
+    shares = np.arange(_IN_GAP) / _IN_GAP
+    more = (knots[close, None] + gaps[close, None] * shares).ravel()
     more = more[(more > inner[0]) & (more < inner[-1])]
     both = np.sort(np.concatenate([inner, more]))
     kept = np.concatenate([[True], np.diff(both) > _ONE * even])
@@ -200,24 +213,30 @@ def _denser(stations: Array, curve: BSpline) -> Array:
 
 def _limits_at(probe: Array, curve: BSpline, tip: BSpline, feed: float, bounds: AxisBounds) -> Array:
     """Path velocity, acceleration and jerk that no axis minds at any of the places, (3,)."""
-    q = [np.abs(curve(probe, order)).max(axis=0) + 1e-12 for order in (1, 2, 3)]
+    qs, qss, qsss = (np.abs(curve(probe, order)).max(axis=0) + 1e-12 for order in (1, 2, 3))
     pace = float(np.linalg.norm(tip(probe, 1), axis=1).max())
-    a, j = 0.25 * float((bounds.acceleration / q[0]).min()), 0.25 * float((bounds.jerk / q[0]).min())
-    fast = [0.7 * feed / pace, 0.7 * float((bounds.velocity / q[0]).min()),
-            0.5 * float(np.sqrt((bounds.acceleration / q[1]).min())), 0.5 * float(np.cbrt((bounds.jerk / q[2]).min())),
-            0.25 * float((bounds.jerk / (3 * q[1])).min()) / a]
-    return np.array([min(fast), a, j])
+    # Each term of an axis's acceleration and jerk gets a share of its limit: see `CurveSchedule.at`.
+    a = 0.25 * float((bounds.acceleration / qs).min())
+    j = 0.25 * float((bounds.jerk / qs).min())
+    by_feed = 0.7 * feed / pace
+    by_velocity = 0.7 * float((bounds.velocity / qs).min())
+    by_acceleration = 0.5 * float(np.sqrt((bounds.acceleration / qss).min()))
+    by_jerk = 0.5 * float(np.cbrt((bounds.jerk / qsss).min()))
+    by_mixed_term = 0.25 * float((bounds.jerk / (3 * qss)).min()) / a
+    return np.array([min(by_feed, by_velocity, by_acceleration, by_jerk, by_mixed_term), a, j])
 
 
 def _first(limits: Array) -> float:
     """Way under the first jerk from rest where all axes go along, mm."""
     v, a, j = limits * np.array([1 / 0.7, 4.0, 4.0])
-    return float(j / 6 * min(np.sqrt(v / j), a / j) ** 3)
+    time = min(np.sqrt(v / j), a / j)
+    return float(j / 6 * time**3)
 
 
 def _enough(length: float, limits: Array, points: int) -> int:
     """Stations enough for those at the ends to lie well inside the first jerk."""
-    return int(np.clip(max(points, 2 * _END * np.cbrt(length / (0.2 * _first(limits)))), 400, 200_000))
+    for_ends = 2 * _END * np.cbrt(length / (0.2 * _first(limits)))
+    return int(np.clip(max(points, for_ends), 400, 200_000))
 
 
 def _stations(length: float, count: int, limits: Array) -> Array:
@@ -225,11 +244,16 @@ def _stations(length: float, count: int, limits: Array) -> Array:
 
     They grow over as much of the path as it takes to put the first of them well inside the first jerk, up to an eighth.
     """
-    low, high = 0.0, length / 8
+    inside = 0.1 * _first(limits)
+    low = 0.0
+    high = length / 8
     for _ in range(60):
         ramp = (low + high) / 2
         ends = (_END * (4 * ramp + length) / count) ** 3 / (27 * ramp * ramp)
-        low, high = (low, ramp) if ends < 0.1 * _first(limits) else (ramp, high)
+        if ends < inside:
+            high = ramp
+        else:
+            low = ramp
     half = 2 * high + length / 2
     u = np.linspace(0.0, 2 * half, count)
     near = np.minimum(u, 2 * half - u)
@@ -239,27 +263,47 @@ def _stations(length: float, count: int, limits: Array) -> Array:
 
 def _problem(s: Array, curve: BSpline, tip: BSpline, feed: float, bounds: AxisBounds) -> SpeedProblem:
     """The linear forms at the stations, those at the ends folded into the first and the last unknown."""
-    limits = [_PLANNED * limit[:, None] for limit in (bounds.acceleration, bounds.jerk)]
-    length, inner = s[-1], s[_END:-_END]
-    middle, step = (inner[1:] + inner[:-1]) / 2, np.diff(inner)[:, None]
-    q1, q2 = curve(middle, 1), curve(middle, 2)
-    acceleration = np.stack([-q1 / (2 * step) + q2 / 2, q1 / (2 * step) + q2 / 2], axis=-1) / limits[0]
+    length = s[-1]
+    inner = s[_END:-_END]
+    acceleration = _acceleration_forms(inner, curve) / (_PLANNED * bounds.acceleration[:, None])
     wide = s[_END - 1:len(s) - _END + 1]
-    left, right = np.diff(wide)[:-1, None], np.diff(wide)[1:, None]
-    n1, n2, n3 = (curve(inner, order) for order in (1, 2, 3))
-    low, high, curl = 1 / (2 * left), 1 / (2 * right), 2 / (left + right)
-    jerk = np.stack([low * (n1 * curl - 1.5 * n2), n3 - (low + high) * n1 * curl + 1.5 * n2 * (low - high),
-                     high * (n1 * curl + 1.5 * n2)], axis=-1) / limits[1]
+    jerk = _jerk_forms(wide, curve) / (_PLANNED * bounds.jerk[:, None])
+    # Under the constant jerk from rest the squared speed grows with the way to the power of 4/3.
     jerk[0, :, 1] += jerk[0, :, 0] * (wide[0] / wide[1]) ** (4 / 3)
     jerk[-1, :, 1] += jerk[-1, :, 2] * ((length - wide[-1]) / (length - wide[-2])) ** (4 / 3)
     jerk[0, :, 0] = jerk[-1, :, 2] = 0.0
     with np.errstate(divide="ignore"):
-        most = (_PLANNED * np.minimum((bounds.velocity / np.abs(n1)).min(axis=1),
-                                      feed / np.linalg.norm(tip(inner, 1), axis=1))) ** 2
+        by_axes = (bounds.velocity / np.abs(curve(inner, 1))).min(axis=1)
+        by_feed = feed / np.linalg.norm(tip(inner, 1), axis=1)
+    most = (_PLANNED * np.minimum(by_axes, by_feed)) ** 2
     for end, zone, way in ((0, s[:_END + 1], inner[0]), (-1, s[-_END - 1:], length - inner[-1])):
         start = _PLANNED * float((bounds.jerk / np.maximum(np.abs(curve(zone, 1)), 1e-12)).min())
         most[end] = min(most[end], start ** (2 / 3) * (6 * way) ** (4 / 3) / 4)
     return SpeedProblem(inner, most, acceleration, jerk)
+
+
+def _acceleration_forms(stations: Array, curve: BSpline) -> Array:
+    """Accelerations of the axes half-way between stations, from the squared speeds at both: (n - 1, m, 2)."""
+    middle = (stations[1:] + stations[:-1]) / 2
+    step = np.diff(stations)[:, None]
+    qs = curve(middle, 1)
+    qss = curve(middle, 2)
+    return np.stack([-qs / (2 * step) + qss / 2, qs / (2 * step) + qss / 2], axis=-1)
+
+
+def _jerk_forms(stations: Array, curve: BSpline) -> Array:
+    """Jerks of the axes over the speed at inner stations, from the squared speeds at three: (n - 2, m, 3)."""
+    steps = np.diff(stations)[:, None]
+    left = steps[:-1]
+    right = steps[1:]
+    qs, qss, qsss = (curve(stations[1:-1], order) for order in (1, 2, 3))
+    low = 1 / (2 * left)
+    high = 1 / (2 * right)
+    curl = 2 / (left + right)
+    before = low * (qs * curl - 1.5 * qss)
+    here = qsss - (low + high) * qs * curl + 1.5 * qss * (low - high)
+    behind = high * (qs * curl + 1.5 * qss)
+    return np.stack([before, here, behind], axis=-1)
 
 
 def _slow(inner: Array, length: float, limits: Array) -> Array:
@@ -269,18 +313,23 @@ def _slow(inner: Array, length: float, limits: Array) -> Array:
     times = np.interp(inner, motion.at(grid)[:, 0], grid)
     for _ in range(8):
         state = motion.at(times)
-        times = np.clip(times - (state[:, 0] - inner) / np.maximum(state[:, 1], 1e-9), 0, motion.duration)
-    return np.asarray(np.maximum(motion.at(times)[:, 1], 1e-9) ** 2)
+        late = (state[:, 0] - inner) / np.maximum(state[:, 1], 1e-9)
+        times = np.clip(times - late, 0, motion.duration)
+    speeds = motion.at(times)[:, 1]
+    return np.asarray(np.maximum(speeds, 1e-9) ** 2)
 
 
 def _join_pieces(inner: Array, b: Array, curve: BSpline, length: float) -> CurveSchedule:
     """The motion in pieces of constant path jerk through the squared speeds, from rest to rest at the length."""
-    v, step = np.sqrt(b), np.diff(inner)
-    first, last = 3 * inner[0] / v[0], 3 * (length - inner[-1]) / v[-1]
+    v = np.sqrt(b)
+    step = np.diff(inner)
+    first = 3 * inner[0] / v[0]  # under constant jerk from rest the speed at the end is three times the mean
+    last = 3 * (length - inner[-1]) / v[-1]
     spans = 2 * step / (v[1:] + v[:-1])
     nodes = first + np.concatenate([[0.0], np.cumsum(spans)])
     times = np.concatenate([[0.0], nodes[:-1] + spans / 2, [nodes[-1] + last]])
     a = np.concatenate([[0.0], np.diff(b) / (2 * step), [0.0]])
+    # Two shapes of acceleration, small beside the plan's, make the motion end at the length and at rest.
     x = times / times[-1]
     shapes = [x * (1 - x), x * (1 - x) * (1 - 2 * x)]
     ends = np.array([_integrate_motion(times, shape)[-1, :2] for shape in shapes]).T
@@ -291,9 +340,12 @@ def _join_pieces(inner: Array, b: Array, curve: BSpline, length: float) -> Curve
 
 def _integrate_motion(times: Array, a: Array) -> Array:
     """Way, velocity and acceleration from rest for accelerations that are linear between times, (k, 3)."""
-    t, jerk = np.diff(times), np.diff(a) / np.diff(times)
-    v = np.concatenate([[0.0], np.cumsum(t * (a[:-1] + a[1:]) / 2)])
-    s = np.concatenate([[0.0], np.cumsum(t * (v[:-1] + t * (a[:-1] / 2 + t * jerk / 6)))])
+    t = np.diff(times)
+    jerk = np.diff(a) / t
+    faster = t * (a[:-1] + a[1:]) / 2
+    v = np.concatenate([[0.0], np.cumsum(faster)])
+    farther = t * (v[:-1] + t * (a[:-1] / 2 + t * jerk / 6))
+    s = np.concatenate([[0.0], np.cumsum(farther)])
     return np.stack([s, v, a], axis=1)
 
 
@@ -315,15 +367,18 @@ class _Excess(NamedTuple):
 
 def _excess(plan: CurveSchedule, tip: BSpline, feed: float, bounds: AxisBounds) -> _Excess:
     """By what factor a motion is too fast for axes and feed, sampled in all its pieces."""
-    times, inside = plan.times, np.linspace(0, 1, _SAMPLES, endpoint=False) + 0.5 / _SAMPLES
-    shares = np.concatenate([[0.0], inside, [1 - 1e-9]])
-    sampled = np.append((times[:-1, None] + np.diff(times)[:, None] * shares).reshape(-1), times[-1])
+    times = plan.times
+    inside = np.linspace(0, 1, _SAMPLES, endpoint=False) + 0.5 / _SAMPLES
+    shares = np.concatenate([[0.0], inside, [1 - 1e-9]])  # jerk jumps where a piece ends: just before that
+    between = times[:-1, None] + np.diff(times)[:, None] * shares
+    sampled = np.append(between.reshape(-1), times[-1])
     _, v, a, j = plan.at(sampled)
-    path = plan.path_at(sampled)
-    pace = np.linalg.norm(tip(path[:, 0], 1), axis=1) * path[:, 1] / feed
-    over = [(np.abs(size) / limit).max(axis=1) for size, limit in
-            ((v, bounds.velocity), (a, bounds.acceleration), (j, bounds.jerk))]
-    return _Excess(path[:, 0], np.maximum.reduce([pace, over[0], np.sqrt(over[1]), np.cbrt(over[2])]))
+    s, speed, _, _ = plan.path_at(sampled).T
+    by_feed = np.linalg.norm(tip(s, 1), axis=1) * speed / feed
+    by_velocity = (np.abs(v) / bounds.velocity).max(axis=1)
+    by_acceleration = (np.abs(a) / bounds.acceleration).max(axis=1)
+    by_jerk = (np.abs(j) / bounds.jerk).max(axis=1)
+    return _Excess(s, np.maximum.reduce([by_feed, by_velocity, np.sqrt(by_acceleration), np.cbrt(by_jerk)]))
 
 
 def _slow_down(plan: CurveSchedule, factors: Array) -> CurveSchedule:

@@ -49,9 +49,12 @@ def corner(before: ArrayLike, vertex: ArrayLike, after: ArrayLike, height: Array
     """
     p1, p2, p3 = (as_rows(rows, 2, "corner points") for rows in (before, vertex, after))
     eps = np.broadcast_to(np.asarray(height, dtype=float), len(p2))
-    if not ((p2[:, 0] > p1[:, 0]) & (p3[:, 0] > p2[:, 0])).all():
+    first_step = p2 - p1
+    second_step = p3 - p2
+    if not ((first_step[:, 0] > 0) & (second_step[:, 0] > 0)).all():
         raise InvalidInput("x does not ascend from point to point of a corner: sort the points and drop repeated ones")
-    alpha, gamma = (np.arctan2(step[:, 1], step[:, 0]) for step in (p2 - p1, p3 - p2))
+    alpha = np.arctan2(first_step[:, 1], first_step[:, 0])
+    gamma = np.arctan2(second_step[:, 1], second_step[:, 0])
     if not (eps * (gamma - alpha) > 0).all():
         raise InvalidInput("the height of a corner is zero or on its outer side, or the slope does not change: give a "
                            "positive height where the slope grows, a negative one where it falls")
@@ -59,12 +62,20 @@ def corner(before: ArrayLike, vertex: ArrayLike, after: ArrayLike, height: Array
     d1 = eps * (np.cos(alpha) + np.cos(beta)) / np.sin(beta - alpha)
     d2 = eps * (np.cos(gamma) + np.cos(beta)) / np.sin(gamma - beta)
     top = p2 + np.column_stack([np.zeros(len(p2)), eps])
-    inner = [p2 + (eps / (np.tan(slope) - np.tan(beta)))[:, None] * np.column_stack([np.ones(len(p2)), np.tan(slope)])
-             for slope in (alpha, gamma)]
+
+    def inner_point(angle: Array) -> Array:
+        """Where the line through the top, at right angles to the bisector, cuts a segment."""
+        slope = np.tan(angle)
+        forward = eps / (slope - np.tan(beta))
+        return np.asarray(p2 + forward[:, None] * np.column_stack([np.ones(len(p2)), slope]))
+
+    rising = inner_point(alpha)
+    falling = inner_point(gamma)
     first = p2 - d1[:, None] * np.column_stack([np.cos(alpha), np.sin(alpha)])
     last = p2 + d2[:, None] * np.column_stack([np.cos(gamma), np.sin(gamma)])
-    return np.stack([np.stack([first, inner[0], inner[0], top], axis=1),
-                     np.stack([top, inner[1], inner[1], last], axis=1)], axis=1)
+    first_curve = np.stack([first, rising, rising, top], axis=1)
+    second_curve = np.stack([top, falling, falling, last], axis=1)
+    return np.stack([first_curve, second_curve], axis=1)
 
 
 def greatest_height(points: Array, shares: tuple[float, float] = (0.5, 0.5)) -> Array:
@@ -81,12 +92,16 @@ def greatest_height(points: Array, shares: tuple[float, float] = (0.5, 0.5)) -> 
     **Source**: [stheta2023] Eqs. (10), (12).
     """
     step = np.diff(points, axis=0)
-    length, angle = np.hypot(*step.T), np.arctan2(step[:, 1], step[:, 0])
-    beta = (angle[1:] + angle[:-1]) / 2
-    share = np.full((len(step), 2), 0.5)
-    share[0, 1], share[-1, 0] = shares
-    before = length[:-1] * share[:-1, 1] * np.sin(beta - angle[:-1]) / (np.cos(angle[:-1]) + np.cos(beta))
-    after = length[1:] * share[1:, 0] * np.sin(angle[1:] - beta) / (np.cos(angle[1:]) + np.cos(beta))
+    length = np.hypot(*step.T)
+    angle = np.arctan2(step[:, 1], step[:, 0])
+    alpha = angle[:-1]
+    gamma = angle[1:]
+    beta = (gamma + alpha) / 2
+    at_start = np.full(len(step), 0.5)  # share of a segment that the corner at its start may take, and at its end
+    at_end = np.full(len(step), 0.5)
+    at_end[0], at_start[-1] = shares
+    before = length[:-1] * at_end[:-1] * np.sin(beta - alpha) / (np.cos(alpha) + np.cos(beta))
+    after = length[1:] * at_start[1:] * np.sin(gamma - beta) / (np.cos(gamma) + np.cos(beta))
     return np.asarray(np.sign(before) * np.minimum(np.abs(before), np.abs(after)))
 
 
@@ -120,15 +135,20 @@ class RoundedLine:
         x : (n,) array_like
         """
         rows = np.asarray(x, dtype=float)
-        slopes = np.diff(self.points[:, 1]) / np.diff(self.points[:, 0])
-        gap = np.clip(np.searchsorted(self.points[:, 0], rows, side="right") - 1, 0, len(slopes) - 1)
-        out = np.stack([self.points[gap, 1] + slopes[gap] * (rows - self.points[gap, 0]), slopes[gap],
-                        np.zeros(len(rows))])
-        for both in self.corners:
-            for one in both:
-                on = np.flatnonzero((rows >= one[0, 0]) & (rows <= one[3, 0]))
+        corner_x, corner_y = self.points.T
+        slopes = np.diff(corner_y) / np.diff(corner_x)
+        segment = np.searchsorted(corner_x, rows, side="right") - 1
+        segment = np.clip(segment, 0, len(slopes) - 1)
+        slope = slopes[segment]
+        y = corner_y[segment] + slope * (rows - corner_x[segment])
+        out = np.stack([y, slope, np.zeros(len(rows))])
+        for curves in self.corners:
+            for control in curves:
+                begin = control[0, 0]
+                end = control[3, 0]
+                on = np.flatnonzero((rows >= begin) & (rows <= end))
                 if len(on):
-                    out[:, on] = _on_bezier(one, rows[on])
+                    out[:, on] = _on_bezier(control, rows[on])
         return out
 
 
@@ -140,10 +160,17 @@ def _on_bezier(control: Array, x: Array) -> Array:
     (x0, y0), (x1, y1), _, (x3, y3) = control
     t = np.full(len(x), (x1 - x0) / (x3 - x0))
     for _ in range(_STEPS):
-        s = 1 - t
-        off = s**3 * x0 + 3 * s * t * x1 + t**3 * x3 - x
-        t = np.clip(t - off / (3 * (s * s * (x1 - x0) + t * t * (x3 - x1))), 0.0, 1.0)
+        value, slope, _ = _cubic(x0, x1, x3, t)
+        t = np.clip(t - (value - x) / slope, 0.0, 1.0)
+    _, dx, ddx = _cubic(x0, x1, x3, t)
+    y, dy, ddy = _cubic(y0, y1, y3, t)
+    return np.stack([y, dy / dx, (ddy * dx - ddx * dy) / dx**3])
+
+
+def _cubic(start: float, inner: float, end: float, t: Array) -> tuple[Array, Array, Array]:
+    """One coordinate of a cubic Bezier curve whose inner points coincide, and its two derivatives."""
     s = 1 - t
-    dx, dy = (3 * (s * s * (b - a) + t * t * (c - b)) for a, b, c in ((x0, x1, x3), (y0, y1, y3)))
-    ddx, ddy = (6 * (t * (c - b) - s * (b - a)) for a, b, c in ((x0, x1, x3), (y0, y1, y3)))
-    return np.stack([s**3 * y0 + 3 * s * t * y1 + t**3 * y3, dy / dx, (ddy * dx - ddx * dy) / dx**3])
+    value = s**3 * start + 3 * s * t * inner + t**3 * end
+    slope = 3 * (s * s * (inner - start) + t * t * (end - inner))
+    bend = 6 * (t * (end - inner) - s * (inner - start))
+    return value, slope, bend

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit, jit_unfused_inline
+from toolaxis.numeric.parts import number_parts
 
 Array = NDArray[np.float64]
 
 #: Half width of the border, as a share of the polygon's greatest x and y: rounding of a crossing, and no more.
 BORDER = 1e-14
+_MOST_SLABS = 4096
 
 
 def signed_area(loop: Array) -> float:
@@ -26,8 +28,11 @@ def signed_area(loop: Array) -> float:
     loop : (m, 2) array
         Vertices; the last one may repeat the first.
     """
-    x, y = loop[:, 0] - loop[0, 0], loop[:, 1] - loop[0, 1]
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    x = loop[:, 0] - loop[0, 0]
+    y = loop[:, 1] - loop[0, 1]
+    next_x = np.roll(x, -1)
+    next_y = np.roll(y, -1)
+    return float(0.5 * np.sum(x * next_y - next_x * y))
 
 
 def polygon_area(loops: Sequence[Array]) -> float:
@@ -38,7 +43,9 @@ def polygon_area(loops: Sequence[Array]) -> float:
     loops : sequence of (m, 2) arrays
         The outer one first, then the holes, either way around.
     """
-    return abs(signed_area(loops[0])) - sum(abs(signed_area(hole)) for hole in loops[1:])
+    outer, *holes = loops
+    inner = sum(abs(signed_area(hole)) for hole in holes)
+    return abs(signed_area(outer)) - inner
 
 
 @dataclass(frozen=True)
@@ -73,22 +80,42 @@ def slabs(loops: tuple[Array, ...]) -> EdgeIndex:
     loops : tuple of (m, 2) arrays
         Closed loops; the closing edge is added where the last vertex does not repeat the first.
     """
-    edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in loops])
-    edges = edges[(edges[:, 0] != edges[:, 2]) | (edges[:, 1] != edges[:, 3])]
-    border = (BORDER * float(np.abs(edges[:, 0::2]).max(initial=0.0)),
-              BORDER * float(np.abs(edges[:, 1::2]).max(initial=0.0)))
-    lower, upper = edges[:, [1, 3]].min(axis=1) - border[1], edges[:, [1, 3]].max(axis=1) + border[1]
-    low, high = (float(lower.min()), float(upper.max())) if len(edges) else (0.0, 1.0)
-    count = max(1, min(4096, 2 * len(edges)))
+    edges = _edges(loops)
+    ends_x = edges[:, [0, 2]]
+    ends_y = edges[:, [1, 3]]
+    wide = BORDER * float(np.abs(ends_x).max(initial=0.0))
+    tall = BORDER * float(np.abs(ends_y).max(initial=0.0))
+    lower = ends_y.min(axis=1) - tall
+    upper = ends_y.max(axis=1) + tall
+    low, high = 0.0, 1.0
+    if len(edges):
+        low = float(lower.min())
+        high = float(upper.max())
+    count = max(1, min(_MOST_SLABS, 2 * len(edges)))
     height = max((high - low) / count, np.finfo(float).tiny)
-    first = np.clip(((lower - low) / height).astype(np.int64), 0, count - 1)
-    last = np.clip(((upper - low) / height).astype(np.int64), 0, count - 1)
-    width = last - first + 1
-    owner = np.repeat(np.arange(len(edges)), width)
-    slab = np.repeat(first, width) + np.arange(len(owner)) - np.repeat(np.cumsum(width) - width, width)
+    first = _slab_numbers(lower, low, height, count)
+    last = _slab_numbers(upper, low, height, count)
+    touched = last - first + 1
+    owner, number = number_parts(touched)
+    slab = first[owner] + number
     order = np.argsort(slab, kind="stable")
-    start = np.concatenate([[0], np.cumsum(np.bincount(slab, minlength=count))]).astype(np.int64)
-    return EdgeIndex(np.ascontiguousarray(edges), start, owner[order].astype(np.int64), low, height, border)
+    member = owner[order].astype(np.int64)
+    sizes = np.bincount(slab, minlength=count)
+    start = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+    return EdgeIndex(np.ascontiguousarray(edges), start, member, low, height, (wide, tall))
+
+
+def _edges(loops: tuple[Array, ...]) -> Array:
+    """Both ends of every edge that has a length, (m, 4): x0, y0, x1, y1."""
+    edges = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in loops])
+    x0, y0, x1, y1 = edges.T
+    return np.asarray(edges[(x0 != x1) | (y0 != y1)])
+
+
+def _slab_numbers(heights: Array, low: float, height: float, count: int) -> NDArray[np.int64]:
+    """Numbers of the slabs in which heights lie; rounding puts none beyond the first or the last."""
+    numbers = ((heights - low) / height).astype(np.int64)
+    return np.asarray(np.clip(numbers, 0, count - 1))
 
 
 @jit_unfused_inline
@@ -114,13 +141,19 @@ def lies_inside(edges: Array, table: tuple[NDArray[np.int64], NDArray[np.int64]]
         slab = min(int(position), count - 1)
         for m in range(start[slab], start[slab + 1]):
             e = member[m]
-            x0, y0, x1, y1 = edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3]
+            x0 = edges[e, 0]
+            y0 = edges[e, 1]
+            x1 = edges[e, 2]
+            y1 = edges[e, 3]
             if min(y0, y1) - tall <= y <= max(y0, y1) + tall:
                 if min(x0, x1) - wide <= x <= max(x0, x1) + wide:
-                    dx, dy = x1 - x0, y1 - y0
-                    if abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide:
+                    dx = x1 - x0
+                    dy = y1 - y0
+                    off_line = dx * (y - y0) - dy * (x - x0)
+                    if abs(off_line) <= abs(dx) * tall + abs(dy) * wide:
                         return True
-                if (y0 > y) != (y1 > y) and x0 + (x1 - x0) * (y - y0) / (y1 - y0) > x:
+                crosses = (y0 > y) != (y1 > y)
+                if crosses and x0 + (x1 - x0) * (y - y0) / (y1 - y0) > x:
                     odd = not odd
     return odd
 
@@ -157,18 +190,23 @@ def inside_numpy(table: EdgeIndex, points: Array) -> NDArray[np.bool_]:
 
     Parameters and result as there.
     """
-    odd, on = np.zeros((2, len(points)), dtype=bool)
+    odd = np.zeros(len(points), dtype=bool)
+    on_border = np.zeros(len(points), dtype=bool)
     finite = np.asarray(np.isfinite(points).all(axis=1))
     x, y = np.where(finite[:, None], points, 0.0).T
     wide, tall = table.border
     for x0, y0, x1, y1 in table.edges:
-        dx, dy = x1 - x0, y1 - y0
+        dx = x1 - x0
+        dy = y1 - y0
         near = (y >= min(y0, y1) - tall) & (y <= max(y0, y1) + tall)
         near &= (x >= min(x0, x1) - wide) & (x <= max(x0, x1) + wide)
-        on |= near & (np.abs(dx * (y - y0) - dy * (x - x0)) <= abs(dx) * tall + abs(dy) * wide)
+        off_line = np.abs(dx * (y - y0) - dy * (x - x0))
+        on_border |= near & (off_line <= abs(dx) * tall + abs(dy) * wide)
         if dy != 0:
-            odd ^= ((y0 > y) != (y1 > y)) & (x0 + dx * (y - y0) / dy > x)
-    return np.asarray((odd | on) & finite)
+            crosses = (y0 > y) != (y1 > y)
+            crossing = x0 + dx * (y - y0) / dy
+            odd ^= crosses & (crossing > x)
+    return np.asarray((odd | on_border) & finite)
 
 
 def chords(loops: tuple[Array, ...], y: float) -> Array:
@@ -184,13 +222,14 @@ def chords(loops: tuple[Array, ...], y: float) -> Array:
     -------
     (k, 2) array of the ends of each stretch along x, in order
     """
-    found = []
+    crossings = []
     for loop in loops:
-        x0, y0 = loop[:, 0], loop[:, 1]
-        x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
-        met = (y0 > y) != (y1 > y)
-        found.append(x0[met] + (x1 - x0)[met] * (y - y0[met]) / (y1 - y0)[met])
-    return np.sort(np.concatenate(found)).reshape(-1, 2)
+        ends = np.roll(loop, -1, axis=0)
+        crosses = (loop[:, 1] > y) != (ends[:, 1] > y)
+        x0, y0 = loop[crosses].T
+        x1, y1 = ends[crosses].T
+        crossings.append(x0 + (x1 - x0) * (y - y0) / (y1 - y0))
+    return np.sort(np.concatenate(crossings)).reshape(-1, 2)
 
 
 def walk(loop: Array, position: Array) -> Array:
@@ -205,7 +244,8 @@ def walk(loop: Array, position: Array) -> Array:
     edge = np.floor(position)
     share = (position - edge)[:, None]
     start = edge.astype(np.int64) % len(loop)
-    return np.asarray((1 - share) * loop[start] + share * loop[(start + 1) % len(loop)])
+    end = (start + 1) % len(loop)
+    return np.asarray((1 - share) * loop[start] + share * loop[end])
 
 
 def stations(loop: Array, step: tuple[float, float]) -> Array:
@@ -221,8 +261,9 @@ def stations(loop: Array, step: tuple[float, float]) -> Array:
     -------
     (k,) array, rising from 0 to below m
     """
-    reach = np.abs(np.roll(loop, -1, axis=0) - loop) / np.asarray(step)
-    pieces = np.maximum(np.ceil(reach.max(axis=1) - 1e-9), 1).astype(np.int64)
-    edge = np.repeat(np.arange(len(loop)), pieces)
-    within = np.arange(len(edge)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    return np.asarray(edge + within / pieces[edge])
+    lengths = np.abs(np.roll(loop, -1, axis=0) - loop)
+    steps = (lengths / np.asarray(step)).max(axis=1)
+    # An edge that is whole steps long but for rounding gets no further point.
+    pieces = np.maximum(np.ceil(steps - 1e-9), 1).astype(np.int64)
+    edge, number = number_parts(pieces)
+    return np.asarray(edge + number / pieces[edge])

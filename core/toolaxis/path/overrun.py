@@ -36,14 +36,17 @@ def overrun_length(chart: Chart, cut: Cut, end: Array, step: Array, forward: boo
     halves = limit_half_widths(chart, cut, end, step)
     share = np.linspace(-1.0, 1.0, _ACROSS)
     wide = np.where(share < 0, halves[:, :1], halves[:, 1:])
-    places = np.clip(step[:, None] + np.nan_to_num(wide, posinf=0.0) * share, s0, s1)
-    target = _targets(chart, cut, np.repeat(end, _ACROSS), places.ravel()).reshape(len(end), _ACROSS, 1, 3)
+    across = np.clip(step[:, None] + np.nan_to_num(wide, posinf=0.0) * share, s0, s1)
+    targets = _targets(chart, cut, np.repeat(end, _ACROSS), across.ravel())
     span = _span(chart, cut, end, step, a1 - a0) * (1.0 if forward else -1.0)
-    tried = end[:, None] + span[:, None] * np.linspace(-1.0, 1.0, _TRIED)
+    tried = (end[:, None] + span[:, None] * np.linspace(-1.0, 1.0, _TRIED)).ravel()
     steps = np.repeat(step, _TRIED)
-    _, tips, _ = tip_points(chart, cut, tried.ravel(), steps)
-    axes = np.broadcast_to(cut.axes(chart.face, chart.uv(tried.ravel(), steps)), tips.shape)
-    off = _distances(cut, target - tips.reshape(len(end), 1, _TRIED, 3), axes.reshape(len(end), 1, _TRIED, 3))
+    _, tips, _ = tip_points(chart, cut, tried, steps)
+    axes = np.broadcast_to(cut.axes(chart.face, chart.uv(tried, steps)), tips.shape)
+    # Every target of an end against every contact tried for it.
+    target_rows = targets.reshape(len(end), _ACROSS, 1, 3)
+    tip_rows = tips.reshape(len(end), 1, _TRIED, 3)
+    off = _distances(cut, target_rows - tip_rows, axes.reshape(tip_rows.shape))
     return _first_cut(off, cut.scallop) * np.abs(span)
 
 
@@ -57,9 +60,11 @@ def _targets(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
 def _span(chart: Chart, cut: Cut, end: Array, step: Array, whole: float) -> Array:
     """Along parameter that a cutter's diameter takes up at the ends, (n,)."""
     small = 1e-4 * whole
-    ways = [chart.face.evaluate(chart.uv(end + shift, step)).point for shift in (-small, small)]
-    speed = np.linalg.norm(ways[1] - ways[0], axis=1) / (2 * small)
-    return np.asarray(2 * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9 / whole))
+    before = chart.face.evaluate(chart.uv(end - small, step)).point
+    behind = chart.face.evaluate(chart.uv(end + small, step)).point
+    speed = np.linalg.norm(behind - before, axis=1) / (2 * small)
+    diameter = 2 * (cut.tool.radius + cut.scallop)
+    return np.asarray(diameter / np.maximum(speed, 1e-9 / whole))
 
 
 def _distances(cut: Cut, relative: Array, axes: Array) -> Array:
@@ -76,4 +81,5 @@ def _first_cut(off: Array, scallop: float) -> Array:
     least = np.minimum.accumulate(off, axis=2)
     enough = least <= np.maximum(least[..., -1:], 0.0) + _SHARE * scallop
     first = np.argmax(enough, axis=2).max(axis=1)
-    return np.asarray(np.maximum(np.linspace(-1.0, 1.0, off.shape[2])[first], 0.0))
+    shares = np.linspace(-1.0, 1.0, off.shape[2])
+    return np.asarray(np.maximum(shares[first], 0.0))

@@ -111,10 +111,13 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4, most: int | None = N
     """
     beyond = _OutsideLoops(chart, cut)
     ends = _outermost(chart, cut, beyond)
-    edges, done = panels(chart), np.zeros(2)
+    edges = panels(chart)
+    done = np.zeros(2)  # passes, and their length
     if ends.step[0] < ends.step[1]:
-        edges, done = np.unique(np.clip(edges, *ends.step)), np.array([1.0, ends.length.mean()])
-    low, high = edges[:-1], edges[1:]
+        edges = np.unique(np.clip(edges, *ends.step))
+        done = np.array([1.0, ends.length.mean()])
+    low = edges[:-1]
+    high = edges[1:]
     looked_at = 0
     for level in range(_ROUNDS):
         fine, coarse = _integrals(chart, cut, beyond, low, high)
@@ -128,8 +131,11 @@ def measure(chart: Chart, cut: Cut, accuracy: float = 5e-4, most: int | None = N
         if good.all() or enough or level == _ROUNDS - 1:
             return Count(float(total[0]), float(total[1]))
         done += fine[good].sum(axis=0)
-        middle = (low[~good] + high[~good]) / 2
-        low, high = np.concatenate([low[~good], middle]), np.concatenate([middle, high[~good]])
+        low = low[~good]
+        high = high[~good]
+        middle = (low + high) / 2
+        low = np.concatenate([low, middle])
+        high = np.concatenate([middle, high])
     raise AssertionError("refinement must end")
 
 
@@ -143,13 +149,14 @@ def panels(chart: Chart) -> Array:
     _, _, s0, s1 = chart.bounds
     turns = [s0, s1, *chart.breaks[1]]
     for loop in chart.loops:
-        way = np.roll(loop[:, 1], -1) - loop[:, 1]
-        way = np.where(np.abs(way) > _LEVEL * (s1 - s0), way, 0.0)
-        turns += loop[np.roll(way, 1) * way <= 0, 1].tolist()
-    inner = np.sort(np.array(turns))
+        step = loop[:, 1]
+        rise = np.roll(step, -1) - step
+        rise = np.where(np.abs(rise) > _LEVEL * (s1 - s0), rise, 0.0)
+        turns += step[np.roll(rise, 1) * rise <= 0].tolist()
+    least = 0.02 * (s1 - s0)
     keep = [s0]
-    for place in inner:
-        if place - keep[-1] > 0.02 * (s1 - s0) and s1 - place > 0.02 * (s1 - s0):
+    for place in np.sort(np.array(turns)):
+        if place - keep[-1] > least and s1 - place > least:
             keep.append(float(place))
     return np.array([*keep, s1])
 
@@ -157,14 +164,17 @@ def panels(chart: Chart) -> Array:
 def _integrals(chart: Chart, cut: Cut, beyond: "_OutsideLoops", low: Array, high: Array) -> tuple[Array, Array]:
     """Passes and length on each panel by 15 and by 7 points, (n, 2) each."""
     nodes = np.concatenate([-_NODES[:0:-1], _NODES])
+    middle = (low + high) / 2
     half = (high - low) / 2
-    steps = ((low + high) / 2)[:, None] + half[:, None] * nodes
+    steps = middle[:, None] + half[:, None] * nodes
     found = _narrowest(chart, cut, beyond, steps.ravel())
     apart = _spacing(chart, cut, found)
     strips = np.where(apart > 0, 1.0 / np.where(apart > 0, apart, 1.0), np.inf)
     rate = np.where(found.length > 0, strips, 0.0)
-    table = np.stack([rate, rate * found.length], axis=1).reshape(len(low), len(nodes), 2) * half[:, None, None]
-    fine, coarse = (np.einsum("k,nkc->nc", np.concatenate([w[:0:-1], w]), table) for w in (_KRONROD, _GAUSS))
+    rates = np.stack([rate, rate * found.length], axis=1)
+    table = rates.reshape(len(low), len(nodes), 2) * half[:, None, None]
+    fine, coarse = (np.einsum("k,nkc->nc", np.concatenate([weights[:0:-1], weights]), table)
+                    for weights in (_KRONROD, _GAUSS))
     return fine, coarse
 
 
@@ -189,8 +199,10 @@ def _spacing(chart: Chart, cut: Cut, found: _Rows) -> Array:
     width = np.where(found.width > 0, found.width, s1 - s0)
     low = np.clip(found.step - width / 2, s0, np.maximum(s1 - width, s0))
     high = np.minimum(low + width, s1)
-    halves = limit_half_widths(chart, cut, np.tile(found.place, 3), np.concatenate([low, (low + high) / 2, high]))
-    before, between, behind = np.where((halves > 0) & (halves < np.inf), halves, np.nan).reshape(3, -1, 2)
+    steps = np.concatenate([low, (low + high) / 2, high])
+    halves = limit_half_widths(chart, cut, np.tile(found.place, 3), steps)
+    known = np.where((halves > 0) & (halves < np.inf), halves, np.nan)
+    before, between, behind = known.reshape(3, -1, 2)
     change = before[:, 1] + behind[:, 0] - between.sum(axis=1)
     return np.asarray(found.width + np.where(np.abs(change) < found.width / 2, change, 0.0))
 
@@ -201,14 +213,18 @@ def _outermost(chart: Chart, cut: Cut, beyond: "_OutsideLoops") -> _Rows:
     inwards = np.array([1.0, -1.0])
     narrow = _narrowest(chart, cut, beyond, border).width
     found = _narrowest(chart, cut, beyond, border + inwards * np.minimum(narrow, border[1] - border[0]) / 2)
+    place = found.place.copy()
     on = rows(chart, border)
-    ends = [(on.low[on.line == k].min(initial=np.inf), on.high[on.line == k].max(initial=-np.inf)) for k in (0, 1)]
-    place = np.array([np.clip(at, *end) if end[0] < end[1] else at
-                      for at, end in zip(found.place, ends, strict=True)])
+    for k in (0, 1):  # a place on the border itself, where the face comes to it
+        low = on.low[on.line == k].min(initial=np.inf)
+        high = on.high[on.line == k].max(initial=-np.inf)
+        if low < high:
+            place[k] = np.clip(place[k], low, high)
     step = found.step
     for _ in range(_SETTLED):
         halves = limit_half_widths(chart, cut, place, step)
-        step = border + inwards * np.where(halves > 0, halves, 0.0)[[0, 1], [0, 1]]
+        towards_border = np.where(halves > 0, halves, 0.0)[[0, 1], [0, 1]]
+        step = border + inwards * towards_border
     return found._replace(step=_off_poles(chart, cut, place, step))
 
 
@@ -218,21 +234,28 @@ def _off_poles(chart: Chart, cut: Cut, place: Array, step: Array) -> Array:
     There each of many passes ends at the border; where strips end elsewhere with another pass, nothing is moved.
     """
     a0, a1, s0, s1 = chart.bounds
-    border, inwards = np.array([s0, s1]), np.array([1.0, -1.0])
-    away = np.abs(step - border)
-    tried = np.append(away, _FARTHER * away)
+    border = np.array([s0, s1])
+    inwards = np.array([1.0, -1.0])
+    own = np.abs(step - border)
+    tried = np.append(own, _FARTHER * own)
     halves = limit_half_widths(chart, cut, np.tile(place, 2), np.tile(border, 2) + np.tile(inwards, 2) * tried)
-    past = (halves[np.arange(4), [0, 1, 0, 1]] - tried).reshape(2, 2)
+    # How far strips go past the border, of the passes and of others farther away.
+    past, past_farther = (halves[np.arange(4), [0, 1, 0, 1]] - tried).reshape(2, 2)
     along = np.linspace(a0, a1, _EXACT_GAPS + 1)
-    for k in np.flatnonzero((away > 0) & (np.abs(past[1] - past[0]) <= _SAME * away)):
-        near, far = away[k], max(away[k], (s1 - s0) / 2)
+    away = own.copy()
+    for k in np.flatnonzero((own > 0) & (np.abs(past_farther - past) <= _SAME * own)):
+        near = own[k]
+        far = max(own[k], (s1 - s0) / 2)
         for _ in range(_HALVED):
             middle = (near + far) / 2
             there = np.full(len(along), border[k] + inwards[k] * middle)
             ends = limit_half_widths(chart, cut, along, there)[:, k] - middle
-            near, far = (middle, far) if (np.abs(ends - past[0, k]) <= _SAME * middle).all() else (near, middle)
+            if (np.abs(ends - past[k]) <= _SAME * middle).all():
+                near = middle
+            else:
+                far = middle
         away[k] = near
-    return np.asarray(np.where(away == np.abs(step - border), step, border + inwards * away))
+    return np.asarray(np.where(away == own, step, border + inwards * away))
 
 
 class _OutsideLoops:
@@ -243,24 +266,31 @@ class _OutsideLoops:
 
     def __init__(self, chart: Chart, cut: Cut) -> None:
         a0, a1, _, _ = chart.bounds
-        self._chart, self._cut = chart, cut
+        self._chart = chart
+        self._cut = cut
         self._along = np.linspace(a0, a1, _ROW_GAPS + 1)
-        self._material = None if chart.rectangular else table(columns(chart, self._along), len(self._along))
+        self._material: Array | None = None  # from which to which step there is material, at each place along
+        if not chart.rectangular:
+            self._material = table(columns(chart, self._along), len(self._along))
 
     def added(self, points: RowPoints, line: Index, guess: Array, steps: Array) -> tuple[RowPoints, Index, Array]:
         """Row points, their rows and approximate widths, with those places added."""
         if self._material is None:
             return points, line, guess
         row, column = (part.ravel() for part in np.indices((len(steps), len(self._along))))
-        along, step = self._along[column], steps[row]
-        width, ends = self._chart.screen(self._cut, along, step), self._material[column]
-        low, high = step - width / 2, step + width / 2
-        holds = ((ends[..., 0] < high[:, None]) & (ends[..., 1] > low[:, None])).any(axis=1)
-        within = ((ends[..., 0] <= step[:, None]) & (ends[..., 1] >= step[:, None])).any(axis=1)
+        along = self._along[column]
+        step = steps[row]
+        width = self._chart.screen(self._cut, along, step)
+        begins = self._material[column, :, 0]
+        ends = self._material[column, :, 1]
+        low = (step - width / 2)[:, None]
+        high = (step + width / 2)[:, None]
+        holds = ((begins < high) & (ends > low)).any(axis=1)
+        within = ((begins <= step[:, None]) & (ends >= step[:, None])).any(axis=1)
         extra = np.flatnonzero(holds & ~within)
         own = points.interval.max(initial=-1) + 1 + np.arange(len(extra))
-        return (RowPoints(np.append(points.interval, own), np.append(points.along, along[extra])),
-                np.append(line, row[extra]), np.append(guess, width[extra]))
+        more = RowPoints(np.append(points.interval, own), np.append(points.along, along[extra]))
+        return more, np.append(line, row[extra]), np.append(guess, width[extra])
 
 
 def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _Rows:
@@ -274,27 +304,41 @@ def _narrowest(chart: Chart, cut: Cut, beyond: _OutsideLoops, steps: Array) -> _
     few = row_points(found, (a1 - a0) / _EXACT_GAPS)
     if not len(few.interval):
         return _Rows(steps, np.zeros(len(steps)), np.full(len(steps), a0), np.zeros(len(steps)))
+    few_line = found.line[few.interval]
+    exact = _widths(chart, cut, few.along, steps[few_line])
+    second = limit_screen(chart, cut, few.along, steps[few_line])
+    comparable = (exact > 0) & (second > 0) & np.isfinite(second)
+    ratio = np.where(comparable, exact / np.where(comparable, second, 1.0), 1.0)
     points = _with_breaks(found, row_points(found, (a1 - a0) / _ROW_GAPS), chart.breaks[0])
     line = found.line[points.interval]
-    step, along = steps[line], points.along
-    exact = _widths(chart, cut, few.along, steps[found.line[few.interval]])
-    second = limit_screen(chart, cut, few.along, steps[found.line[few.interval]])
-    known = (exact > 0) & (second > 0) & np.isfinite(second)
-    ratio = np.where(known, exact / np.where(known, second, 1.0), 1.0)
-    guess = limit_screen(chart, cut, along, step) * np.interp(_flat(found, points), _flat(found, few), ratio)
+    screened = limit_screen(chart, cut, points.along, steps[line])
+    guess = screened * np.interp(_flat(found, points), _flat(found, few), ratio)
     place, row, own = _candidates(*beyond.added(points, line, guess, steps))
-    row, place = np.append(found.line[few.interval], row), np.append(few.along, place)
-    own = np.append(few.interval, own)
-    width = np.append(exact, _widths(chart, cut, place[len(exact):], steps[row[len(exact):]]))
-    inner = own < len(found.low)
-    low, high = (np.where(inner, np.append(end, 0.0)[np.minimum(own, len(end))], place)
-                 for end in (found.low, found.high))
-    width, place = _descend_to_narrowest(chart, cut, steps, _Places(row, place, width, low, high),
-                                         (a1 - a0) / _EXACT_GAPS)
-    _, tip, _ = tip_points(chart, cut, along, step)
-    gap = np.where(np.diff(points.interval) == 0, np.linalg.norm(np.diff(tip, axis=0), axis=1), 0.0)
-    length = np.bincount(line[1:], weights=gap, minlength=len(steps))
-    return _Rows(steps, width, place, np.asarray(length, dtype=float))
+    width = np.append(exact, _widths(chart, cut, place, steps[row]))
+    row = np.append(few_line, row)
+    place = np.append(few.along, place)
+    known = _Places(row, place, width, *_ranges(found, np.append(few.interval, own), place))
+    width, place = _descend_to_narrowest(chart, cut, steps, known, (a1 - a0) / _EXACT_GAPS)
+    return _Rows(steps, width, place, _tip_lengths(chart, cut, points, line, steps))
+
+
+def _ranges(found: Intervals, own: Index, place: Array) -> tuple[Array, Array]:
+    """From where to where places may move, by the numbers of their intervals: those beyond all intervals stay."""
+    within = own < len(found.low)
+    low = place.copy()
+    high = place.copy()
+    low[within] = found.low[own[within]]
+    high[within] = found.high[own[within]]
+    return low, high
+
+
+def _tip_lengths(chart: Chart, cut: Cut, points: RowPoints, line: Index, steps: Array) -> Array:
+    """Length of the tip's motion on each pass, (n,) mm, from row points and their passes."""
+    _, tip, _ = tip_points(chart, cut, points.along, steps[line])
+    chords = np.linalg.norm(np.diff(tip, axis=0), axis=1)
+    same = np.diff(points.interval) == 0
+    length = np.bincount(line[1:], weights=np.where(same, chords, 0.0), minlength=len(steps))
+    return np.asarray(length, dtype=float)
 
 
 class _Places(NamedTuple):
@@ -313,29 +357,39 @@ def _descend_to_narrowest(chart: Chart, cut: Cut, steps: Array, known: _Places, 
     0 and the first along parameter where a row has no place.
     """
     order = np.lexsort((known.width, known.row))
-    first = order[np.unique(known.row[order], return_index=True)[1]]
-    row, place, width = known.row[first], known.place[first], known.width[first]
-    low, high = known.low[first], known.high[first]
+    _, begins = np.unique(known.row[order], return_index=True)
+    first = order[begins]
+    row = known.row[first]
+    place = known.place[first]
+    width = known.width[first]
+    low = known.low[first]
+    high = known.high[first]
     for level in range(1, _HALVINGS + 1):
         shift = apart / 2**level
-        before, after = np.maximum(place - shift, low), np.minimum(place + shift, high)
-        both = _widths(chart, cut, np.append(before, after), np.tile(steps[row], 2))
-        left, right = both[: len(row)], both[len(row) :]
+        before = np.maximum(place - shift, low)
+        after = np.minimum(place + shift, high)
+        left, right = _widths(chart, cut, np.append(before, after), np.tile(steps[row], 2)).reshape(2, -1)
         if level == _HALVINGS:
-            width = np.where((before < place) & (after > place), _vertex(left, width, right), np.minimum(width, left))
+            inner = (before < place) & (after > place)
+            width = np.where(inner, _vertex(left, width, right), np.minimum(width, left))
             width = np.minimum(width, right)
         else:
-            lower = np.minimum(left, right) < width
+            lesser = np.minimum(left, right)
+            lower = lesser < width
             place = np.where(lower, np.where(left <= right, before, after), place)
-            width = np.where(lower, np.minimum(left, right), width)
-    least, where = np.zeros(len(steps)), np.full(len(steps), chart.bounds[0])
-    least[row], where[row] = width, place
+            width = np.where(lower, lesser, width)
+    least = np.zeros(len(steps))
+    where = np.full(len(steps), chart.bounds[0])
+    least[row] = width
+    where[row] = place
     return least, where
 
 
 def _vertex(left: Array, middle: Array, right: Array) -> Array:
     """Least value of the parabola through the squares of three values at even distances, if it is a valley."""
-    a, b, c = left**2, middle**2, right**2
+    a = left**2
+    b = middle**2
+    c = right**2
     bend = a - 2 * b + c
     valley = (b <= a) & (b <= c) & (bend > 0)
     least = b - 0.125 * (c - a) ** 2 / np.where(valley, bend, 1.0)
@@ -351,15 +405,18 @@ def _widths(chart: Chart, cut: Cut, along: Array, step: Array) -> Array:
 
 def _flat(found: Intervals, points: RowPoints) -> Array:
     """Places on all intervals, one after the other, as increasing numbers."""
-    low, high = found.low[points.interval], found.high[points.interval]
-    return np.asarray(2 * points.interval + (points.along - low) / np.maximum(high - low, np.finfo(float).tiny))
+    low = found.low[points.interval]
+    high = found.high[points.interval]
+    share = (points.along - low) / np.maximum(high - low, np.finfo(float).tiny)
+    return np.asarray(2 * points.interval + share)
 
 
 def _with_breaks(found: Intervals, points: RowPoints, breaks: Array) -> RowPoints:
     """Row points with the places added where the surface is not smooth."""
     inside = (breaks > found.low[:, None]) & (breaks < found.high[:, None])
-    interval, which = np.nonzero(inside)
-    interval, along = np.append(points.interval, interval), np.append(points.along, breaks[which])
+    added, which = np.nonzero(inside)
+    interval = np.append(points.interval, added)
+    along = np.append(points.along, breaks[which])
     order = np.lexsort((along, interval))
     return RowPoints(interval[order], along[order])
 
@@ -375,11 +432,13 @@ def _candidates(points: RowPoints, line: Index, guess: Array) -> tuple[Array, In
     chosen = order[np.arange(len(order)) - first < _CANDIDATES]
     place = points.along[chosen].copy()
     inner = np.isfinite(before[chosen]) & np.isfinite(after[chosen])
-    i, tiny = chosen[inner], np.finfo(float).tiny
-    left, right = points.along[i] - points.along[i - 1], points.along[i + 1] - points.along[i]
-    left, right = np.maximum(left, tiny), np.maximum(right, tiny)
+    i = chosen[inner]
+    tiny = np.finfo(float).tiny
+    left = np.maximum(points.along[i] - points.along[i - 1], tiny)
+    right = np.maximum(points.along[i + 1] - points.along[i], tiny)
     square = guess**2  # nearly a parabola where the lean crosses the feed at a right angle
-    slope_left, slope_right = (square[i] - square[i - 1]) / left, (square[i + 1] - square[i]) / right
+    slope_left = (square[i] - square[i - 1]) / left
+    slope_right = (square[i + 1] - square[i]) / right
     bend = (slope_right - slope_left) / (left + right)
     slope = (slope_left * right + slope_right * left) / (left + right)
     shift = np.where(bend > 0, -slope / np.where(bend > 0, 2 * bend, 1.0), 0.0)

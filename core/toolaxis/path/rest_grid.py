@@ -6,11 +6,14 @@ cells in which that finds something and of those beside them, as far as it goes 
 asked at each node: cells of which all is far above zero are known from their middle.
 """
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_nodes
+from toolaxis.numeric.parts import number_parts
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -59,28 +62,31 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     values : (m, n) array
         -1 where it was not asked.
     """
-    coarse, parts = zip(*(_lines(face, axis, size, most) for axis in (0, 1)), strict=True)
-    nodes = np.stack(np.meshgrid(*coarse, indexing="ij"), axis=-1)
+    coarse_u, parts_u = _lines(face, 0, size, most)
+    coarse_v, parts_v = _lines(face, 1, size, most)
+    coarse = (coarse_u, coarse_v)
+    nodes = grid_nodes(*coarse)
     inside = face.contains(nodes.reshape(-1, 2)).reshape(nodes.shape[:2])
     above = np.zeros_like(inside)
     above[inside] = function(nodes[inside]) > 0
-    wanted = above[1:, 1:] | above[:-1, 1:] | above[1:, :-1] | above[:-1, :-1]
+    wanted = _touches_corner(above)
     asked = [_places(face, loop, size) for loop in face.outline]
     if between is not None:
         asked.append(between[face.contains(between)])
     places = np.concatenate(asked)
     wanted[_cells_of(coarse, places[function(places) > 0])] = True
-    lines = (_divide_line(coarse[0], parts[0]), _divide_line(coarse[1], parts[1]))
+    lines = (_divide_line(coarse_u, parts_u), _divide_line(coarse_v, parts_v))
     values = np.full((len(lines[0]), len(lines[1])), -1.0)
     own = _own(face, coarse, inside)
     done = np.zeros_like(wanted)
     while wanted.any():
         further = np.zeros_like(wanted)
         cells = np.argwhere(wanted)
-        _ask(function, whole, lines, values, np.hstack([cells * parts, (cells + 1) * parts]))
-        for i, j in cells:
-            block = np.s_[i * parts[0]:(i + 1) * parts[0] + 1, j * parts[1]:(j + 1) * parts[1] + 1]
-            _go_on(values[block] > 0, (int(i), int(j)), further)
+        first = cells * (parts_u, parts_v)
+        last = (cells + 1) * (parts_u, parts_v)
+        _ask(function, whole, lines, values, np.hstack([first, last]))
+        for (i, j), (i0, j0), (i1, j1) in zip(cells, first, last, strict=True):
+            _go_on(values[i0:i1 + 1, j0:j1 + 1] > 0, (int(i), int(j)), further)
         done |= wanted
         wanted = further & own & ~done
     return lines, values
@@ -102,13 +108,23 @@ def sample_again(lines: Lines, values: Array, function: Callable[[Array], Array]
     (m, n) array
     """
     above = values > 0
-    rows, columns = (np.arange(0, size - 1, _BLOCK) for size in values.shape)
-    some = np.add.reduceat(np.add.reduceat(above.astype(np.int64), rows, axis=0), columns, axis=1)
-    i, j = np.nonzero(some)
-    ends = [np.append(first[1:], size - 1) for first, size in zip((rows, columns), values.shape, strict=True)]
+    last_row = values.shape[0] - 1
+    last_column = values.shape[1] - 1
+    rows = np.arange(0, last_row, _BLOCK)
+    columns = np.arange(0, last_column, _BLOCK)
+    in_rows = np.add.reduceat(above.astype(np.int64), rows, axis=0)
+    i, j = np.nonzero(np.add.reduceat(in_rows, columns, axis=1))
+    row_ends = np.append(rows[1:], last_row)
+    column_ends = np.append(columns[1:], last_column)
+    blocks = np.column_stack([rows[i], columns[j], row_ends[i], column_ends[j]])
     found = values.copy()
-    _ask(function, whole, lines, found, np.column_stack([rows[i], columns[j], ends[0][i], ends[1][j]]), above)
+    _ask(function, whole, lines, found, blocks, above)
     return np.where(above, np.minimum(values, found), values)
+
+
+def _touches_corner(nodes: Bools) -> Bools:
+    """Cells of which some corner is marked."""
+    return np.asarray(nodes[1:, 1:] | nodes[:-1, 1:] | nodes[1:, :-1] | nodes[:-1, :-1])
 
 
 def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Bools], lines: Lines, values: Array,
@@ -136,69 +152,84 @@ def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Boo
 
 def _quarters(blocks: Ints) -> Ints:
     """Blocks divided along both sides, those of one cell along that side across it alone."""
-    first, last = blocks[:, :2], blocks[:, 2:]
-    middle = (first + last + 1) // 2
-    halves = [[(first, middle), (middle, last)][k] for k in (0, 1)]
-    made = [np.column_stack([halves[a][0][:, 0], halves[b][0][:, 1], halves[a][1][:, 0], halves[b][1][:, 1]])
-            for a in (0, 1) for b in (0, 1)]
-    found = np.concatenate(made)
-    return np.asarray(found[(found[:, 0] < found[:, 2]) & (found[:, 1] < found[:, 3])])
+    i0, j0, i1, j1 = blocks.T
+    i = (i0 + i1 + 1) // 2
+    j = (j0 + j1 + 1) // 2
+    quarters = [(i0, j0, i, j), (i0, j, i, j1), (i, j0, i1, j), (i, j, i1, j1)]
+    found = np.concatenate([np.column_stack(quarter) for quarter in quarters])
+    real = (found[:, 0] < found[:, 2]) & (found[:, 1] < found[:, 3])
+    return np.asarray(found[real])
 
 
 def _go_on(above: Bools, cell: tuple[int, int], further: Bools) -> None:
     """Mark the cells beside one into which what is above zero in it goes on."""
     i, j = cell
-    sides = ((i - 1, j, above[0]), (i + 1, j, above[-1]), (i, j - 1, above[:, 0]), (i, j + 1, above[:, -1]))
-    for a, b, side in sides:
-        if side.any() and 0 <= a < further.shape[0] and 0 <= b < further.shape[1]:
-            further[a, b] = True
+    rows, columns = further.shape
+    beside = ((i - 1, j, above[0]), (i + 1, j, above[-1]), (i, j - 1, above[:, 0]), (i, j + 1, above[:, -1]))
+    for row, column, side in beside:
+        there = 0 <= row < rows and 0 <= column < columns
+        if there and side.any():
+            further[row, column] = True
 
 
 def _lines(face: Face, axis: int, size: float, most: int) -> tuple[Array, int]:
     """Lines of coarse cells along one parameter, one cell farther than the face on both sides; fine cells in each."""
-    low, high = face.bounds[2 * axis], face.bounds[2 * axis + 1]
-    at = (np.linspace(*face.bounds[:2], _MEASURED + 1), np.linspace(*face.bounds[2:], _MEASURED + 1))
-    nodes = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1)
+    low = face.bounds[2 * axis]
+    high = face.bounds[2 * axis + 1]
+    u = np.linspace(*face.bounds[:2], _MEASURED + 1)
+    v = np.linspace(*face.bounds[2:], _MEASURED + 1)
+    nodes = grid_nodes(u, v)
     points = face.evaluate(nodes.reshape(-1, 2)).point.reshape(*nodes.shape[:2], 3)
-    length = float(np.linalg.norm(np.diff(points, axis=axis), axis=-1).sum(axis=axis).max())
+    steps = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+    length = float(steps.sum(axis=axis).max())
     fine = float(np.clip(np.ceil(length / size), _FEWEST, most))
     count = int(np.clip(np.ceil(fine / 8), _FEWEST, _COARSE))
     pitch = (high - low) / (count - 0.137)  # no line lies on an end of the range
-    return np.asarray(low - 1.0637 * pitch + pitch * np.arange(count + 3)), int(np.ceil(fine / count))
+    lines = low - 1.0637 * pitch + pitch * np.arange(count + 3)
+    return np.asarray(lines), int(np.ceil(fine / count))
 
 
 def _divide_line(line: Array, parts: int) -> Array:
     share = np.arange(parts) / parts
-    return np.append((line[:-1, None] + np.diff(line)[:, None] * share).ravel(), line[-1])
+    between = line[:-1, None] + np.diff(line)[:, None] * share
+    return np.append(between.ravel(), line[-1])
 
 
 def _cells_of(coarse: tuple[Array, ...], places: Array) -> tuple[NDArray[np.intp], ...]:
     """Coarse cells in which places lie."""
-    return tuple(np.clip(np.searchsorted(line, places[:, k], side="right") - 1, 0, len(line) - 2)
-                 for k, line in enumerate(coarse))
+    found = []
+    for line, along in zip(coarse, places.T, strict=True):
+        cell = np.searchsorted(line, along, side="right") - 1
+        found.append(np.clip(cell, 0, len(line) - 2))
+    return tuple(found)
 
 
 def _own(face: Face, coarse: tuple[Array, ...], inside: Bools) -> Bools:
     """Which coarse cells hold some of the face; with the nodes that are inside of it."""
-    found = inside[1:, 1:] | inside[:-1, 1:] | inside[1:, :-1] | inside[:-1, :-1]
+    found = _touches_corner(inside)
     pitch = np.array([line[1] - line[0] for line in coarse])
     for loop in face.outline:
-        ends = np.roll(loop, -1, axis=0)
-        parts = np.maximum(np.ceil((np.abs(ends - loop) / pitch).max(axis=1) * 4), 1).astype(int)
+        edges = np.roll(loop, -1, axis=0) - loop
+        crossed = (np.abs(edges) / pitch).max(axis=1)
+        parts = np.maximum(np.ceil(crossed * 4), 1).astype(int)
         found[_cells_of(coarse, _between(loop, parts))] = True
     return np.asarray(found)
 
 
 def _places(face: Face, loop: Array, size: float) -> Array:
     """Places along a loop, no farther apart than a size, mm, (n, 2)."""
-    pieces = _between(loop, np.full(len(loop), max(1, -(-_PIECES // len(loop)))))
+    parts_each = max(1, math.ceil(_PIECES / len(loop)))
+    pieces = _between(loop, np.full(len(loop), parts_each))
     point = face.evaluate(pieces).point
     length = np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)
-    return _between(pieces, np.ceil(length / max(size, float(length.sum()) / _PLACES)).astype(int) + 1)
+    step = max(size, float(length.sum()) / _PLACES)
+    return _between(pieces, np.ceil(length / step).astype(int) + 1)
 
 
 def _between(loop: Array, parts: NDArray[np.int64]) -> Array:
     """Vertices of a loop and places between them, that divide each edge into parts."""
-    share = np.concatenate([np.arange(count) / count for count in parts])[:, None]
-    start, end = np.repeat(loop, parts, axis=0), np.repeat(np.roll(loop, -1, axis=0), parts, axis=0)
+    edge, number = number_parts(parts)
+    share = (number / parts[edge])[:, None]
+    start = loop[edge]
+    end = np.roll(loop, -1, axis=0)[edge]
     return np.asarray(start * (1 - share) + end * share)

@@ -55,9 +55,12 @@ def normals(d: Derivatives, flip: bool = False, inward: ArrayLike = (1.0, 1.0)) 
     size = lengths(raw)
     poor = _spans_nothing(d, size)
     if poor.any():
-        raw[poor] = _change(Derivatives(*(x[poor] for x in d)), np.broadcast_to(inward, (len(poor), 2))[poor])
+        there = Derivatives(*(each[poor] for each in d))
+        ways = np.broadcast_to(inward, (len(poor), 2))[poor]
+        raw[poor] = _change(there, ways)
         size[poor] = lengths(raw[poor])
-    return np.asarray((-1.0 if flip else 1.0) * raw / np.where(size > 0, size, 1.0)[:, None])
+    sign = -1.0 if flip else 1.0
+    return np.asarray(sign * raw / np.where(size > 0, size, 1.0)[:, None])
 
 
 def degenerate(d: Derivatives) -> NDArray[np.bool_]:
@@ -77,21 +80,27 @@ def _change(d: Derivatives, inward: Array) -> Array:
     along_v = np.cross(d.suv, d.sv) + np.cross(d.su, d.svv)
     change = inward[:, :1] * along_u + inward[:, 1:] * along_v
     longest = np.sqrt(np.maximum(dot(d.su, d.su), dot(d.sv, d.sv)))
-    second = np.max([np.linalg.norm(x, axis=1) for x in (d.suu, d.suv, d.svv)], axis=0)
+    second = np.max([np.linalg.norm(each, axis=1) for each in (d.suu, d.suv, d.svv)], axis=0)
     noise = 1e-12 * longest * second * np.linalg.norm(inward, axis=1)
-    return np.where((np.linalg.norm(change, axis=1) > noise)[:, None], change, 0.0)
+    real = np.linalg.norm(change, axis=1) > noise
+    return np.where(real[:, None], change, 0.0)
 
 
 def first_form(d: Derivatives) -> Array:
     """E, F, G as an (n, 2, 2) array, mm^2."""
     f = dot(d.su, d.sv)
-    return np.stack([np.stack([dot(d.su, d.su), f], -1), np.stack([f, dot(d.sv, d.sv)], -1)], -2)
+    return _matrices(dot(d.su, d.su), f, f, dot(d.sv, d.sv))
 
 
 def second_form(d: Derivatives, normal: Array) -> Array:
     """L, M, N as an (n, 2, 2) array, mm; positive where the surface bends towards the normal."""
     m = dot(d.suv, normal)
-    return np.stack([np.stack([dot(d.suu, normal), m], -1), np.stack([m, dot(d.svv, normal)], -1)], -2)
+    return _matrices(dot(d.suu, normal), m, m, dot(d.svv, normal))
+
+
+def _matrices(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Matrices ((a, b), (c, d)), (n, 2, 2)."""
+    return np.stack([np.stack([a, b], -1), np.stack([c, d], -1)], -2)
 
 
 def curvature_form(d: Derivatives, normal: Array, x: Array) -> Array:
@@ -108,8 +117,8 @@ def curvature_form(d: Derivatives, normal: Array, x: Array) -> Array:
     (n, 2, 2) array
     """
     y = np.cross(normal, x)
-    a, b, c, e = dot(d.su, x), dot(d.sv, x), dot(d.su, y), dot(d.sv, y)
-    inverse = _inverse(np.stack([np.stack([a, b], -1), np.stack([c, e], -1)], -2))
+    tangents = _matrices(dot(d.su, x), dot(d.sv, x), dot(d.su, y), dot(d.sv, y))
+    inverse = _inverse(tangents)
     return np.asarray(np.swapaxes(inverse, 1, 2) @ second_form(d, normal) @ inverse)
 
 
@@ -118,17 +127,18 @@ def _inverse(tangent: Array) -> Array:
 
     There the curvature across the only tangent is unknown and comes out as zero.
     """
-    (a, b), (c, e) = tangent[:, 0].T, tangent[:, 1].T
-    determinant = a * e - b * c
-    scale = np.maximum(a * a + c * c, b * b + e * e)
+    a, b = tangent[:, 0].T
+    c, d = tangent[:, 1].T
+    determinant = a * d - b * c
+    scale = np.maximum(a * a + c * c, b * b + d * d)
     sound = np.abs(determinant) > DEGENERATE * scale
-    inverse = np.stack([np.stack([e, -b], -1), np.stack([-c, a], -1)], -2)
-    inverse = inverse / np.where(sound, determinant, 1.0)[:, None, None]
+    adjugate = _matrices(d, -b, -c, a)
+    inverse = adjugate / np.where(sound, determinant, 1.0)[:, None, None]
     if not sound.all():
         rest = np.flatnonzero(~sound)
         finite = np.asarray(np.isfinite(tangent[rest]).all(axis=(1, 2)))
-        inverse[rest] = np.where(finite[:, None, None],
-                                 np.linalg.pinv(np.nan_to_num(tangent[rest]), rcond=DEGENERATE), np.nan)
+        pseudo = np.linalg.pinv(np.nan_to_num(tangent[rest]), rcond=DEGENERATE)
+        inverse[rest] = np.where(finite[:, None, None], pseudo, np.nan)
     return np.asarray(inverse)
 
 
@@ -146,12 +156,18 @@ def curvatures(d: Derivatives, normal: Array) -> Curvature:
     At degenerate points the derivatives do not tell the curvature across the only tangent, and zero is answered:
     `Face.curvature` steps into the surface there.
     """
-    base = np.where((dot(d.su, d.su) >= dot(d.sv, d.sv))[:, None], d.su, d.sv)
+    # A tangent frame whose x lies along the longer derivative: the shorter one may be next to nothing.
+    along_u = dot(d.su, d.su) >= dot(d.sv, d.sv)
+    base = np.where(along_u[:, None], d.su, d.sv)
     base = base - dot(base, normal)[:, None] * normal
     size = np.linalg.norm(base, axis=1, keepdims=True)
     x = base / np.where(size > 0, size, 1.0)
     form = curvature_form(d, normal, x)
-    mean, half, twist = 0.5 * (form[:, 0, 0] + form[:, 1, 1]), 0.5 * (form[:, 0, 0] - form[:, 1, 1]), form[:, 0, 1]
-    spread, angle = np.hypot(half, twist), 0.5 * np.arctan2(twist, half)
+    # Mohr's circle of the form: its middle, and its radius at twice the angle of the first direction.
+    mean = 0.5 * (form[:, 0, 0] + form[:, 1, 1])
+    half = 0.5 * (form[:, 0, 0] - form[:, 1, 1])
+    twist = form[:, 0, 1]
+    spread = np.hypot(half, twist)
+    angle = 0.5 * np.arctan2(twist, half)
     d1 = np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * np.cross(normal, x)
     return Curvature(mean + spread, mean - spread, d1, np.cross(normal, d1))

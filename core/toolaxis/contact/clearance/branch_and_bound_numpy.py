@@ -11,6 +11,7 @@ from toolaxis.contact.clearance.branch_and_bound import BUDGET, DECIDED, ToolDat
 from toolaxis.contact.clearance.cell_bounds import BETTER
 from toolaxis.contact.clearance.relief import relief_over_numpy
 from toolaxis.numeric.bspline import surface_derivatives_many_numpy
+from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import dot
 from toolaxis.shape.bounding.bounding_tree import BoundingTree
 from toolaxis.shape.bounding.build import clip_edges, is_near_face, margin_of, remainder, second_remainder
@@ -60,16 +61,17 @@ class _Cells(NamedTuple):
 def _trim_triples(cells: BoundingTree, front: _Front) -> tuple[_Front, NDArray[np.intp], _Corners]:
     """Triples below leaves less what trims cut away, where they stood, and the corners that are left."""
     leaf = cells.link[front.node, 3]
-    start, count = cells.edge_start[leaf], np.diff(cells.edge_start)[leaf]
-    count = np.where(front.below, count, 0)
-    owner = np.repeat(np.arange(len(leaf)), count)
-    index = np.repeat(start, count) + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    count = np.where(front.below, np.diff(cells.edge_start)[leaf], 0)
+    owner, number = number_parts(count)
+    index = cells.edge_start[leaf][owner] + number
     u, v, du, dv = front.rect.T
     rect = np.stack([u - du, u + du, v - dv, v + dv], axis=1)
-    through, ends = clip_edges(rect[owner], cells.edges[index], 1e-9 * np.stack([du, dv], axis=1)[owner])
+    margin = 1e-9 * front.rect[:, 2:]
+    through, ends = clip_edges(rect[owner], cells.edges[index], margin[owner])
     cut = np.zeros(len(leaf), dtype=bool)
     cut[owner[through]] = True
-    owners, points = [np.repeat(owner[through], 2)], [ends[through].reshape(-1, 2)]
+    owners = [np.repeat(owner[through], 2)]
+    points = [ends[through].reshape(-1, 2)]
     rows = np.flatnonzero(cut)
     for corner in ((0, 2), (0, 3), (1, 2), (1, 3)):
         within = _ask_nodes(cells, front.node[rows], rect[rows][:, corner], _reached)
@@ -96,35 +98,44 @@ def _ask_nodes(cells: BoundingTree, node: Indices, uv: Array, question: Callable
 
 def _shrunk(front: _Front, which: tuple[Flags, Flags], owner: NDArray[np.intp],
             points: Array) -> tuple[_Front, NDArray[np.intp], _Corners]:
+    """Triples that are cut shrunk to the corners left of them, and those that are gone taken out."""
     cut, kept = which
-    low, high = np.full((len(cut), 2), np.inf), np.full((len(cut), 2), -np.inf)
+    low = np.full((len(cut), 2), np.inf)
+    high = np.full((len(cut), 2), -np.inf)
     np.minimum.at(low, owner, points)
     np.maximum.at(high, owner, points)
+    middle = (low[cut] + high[cut]) / 2
+    half = (high[cut] - low[cut]) / 2 + 1e-9 * front.rect[cut, 2:]
     rect = front.rect.copy()
-    rect[cut] = np.hstack([(low[cut] + high[cut]) / 2, (high[cut] - low[cut]) / 2 + 1e-9 * front.rect[cut, 2:]])
-    place = np.cumsum(kept) - 1
+    rect[cut] = np.hstack([middle, half])
+    number = np.cumsum(kept) - 1
     share = (points - rect[owner, :2]) / rect[owner, 2:]
-    return (front._replace(rect=rect).take(kept), np.flatnonzero(kept),
-            _Corners(cut[kept], place[owner].astype(np.int64), share))
+    corners = _Corners(cut[kept], number[owner].astype(np.int64), share)
+    return front._replace(rect=rect).take(kept), np.flatnonzero(kept), corners
 
 
 def _enclose_cells(cells: BoundingTree, front: _Front) -> tuple[_Front, _Cells]:
     """Cells of the triples; those wholly outside the loops are gone."""
     front, _, corners = _trim_triples(cells, front)
-    link, leaf = cells.link[front.node], cells.leaf[cells.link[front.node, 3]]
+    link = cells.link[front.node]
+    leaf = cells.leaf[link[:, 3]]
     shape = np.column_stack([cells.shape[front.node], np.where(link[:, 3] >= 0, leaf[:, 7], 0.0)])
     bend = cells.bend[front.node]
     for k in np.unique(link[front.below, 2]):
         rows = np.flatnonzero(front.below & (link[:, 2] == k))
         half = front.rect[rows, 2:]
+        du = half[:, :1]
+        dv = half[:, 1:]
+        extra = leaf[rows, 7]
         d = surface_derivatives_many_numpy(cells.faces[k].surface.data, front.rect[rows, :2])
-        a, b = d[:, 1] * half[:, :1], d[:, 2] * half[:, 1:]
-        e = remainder(leaf[rows, 4:7], half) + leaf[rows, 7]
+        q, su, sv, suu, suv, svv = d.swapaxes(0, 1)
+        a = su * du
+        b = sv * dv
+        e = remainder(leaf[rows, 4:7], half) + extra
+        rest = second_remainder(leaf[rows, 11:], half) + extra
         radius = np.maximum(np.linalg.norm(a + b, axis=1), np.linalg.norm(a - b, axis=1)) + e
-        shape[rows] = np.column_stack([d[:, 0], a, b, e, radius, leaf[rows, 7]])
-        bend[rows] = np.column_stack([d[:, 3] * half[:, :1]**2, d[:, 4] * half[:, :1] * half[:, 1:],
-                                      d[:, 5] * half[:, 1:]**2,
-                                      second_remainder(leaf[rows, 11:], half) + leaf[rows, 7]])
+        shape[rows] = np.column_stack([q, a, b, e, radius, extra])
+        bend[rows] = np.column_stack([suu * du**2, suv * du * dv, svv * dv**2, rest])
     real = np.where(front.below, np.where(corners.cut, 0, 2), link[:, 4])
     return front, _Cells(shape, bend, real, corners)
 
@@ -146,12 +157,15 @@ class _LocalFrames(NamedTuple):
         scale = np.where(rho > 1e-12, 1 / np.maximum(rho, 1e-12), 0.0)
         p = p * scale[:, None]
         value, rise, climb, bend = piece_distance_numpy(self.piece, rho, z)
-        out, up = np.einsum("nkc,nc->nk", self.span, p), np.einsum("nkc,nc->nk", self.span, self.axis)
+        # The directions' parts away from the axis, along it and around it; and across the gradient in the meridian.
+        out = np.einsum("nkc,nc->nk", self.span, p)
+        up = np.einsum("nkc,nc->nk", self.span, self.axis)
         around = np.einsum("nkc,nc->nk", self.span, np.cross(self.axis, p))
         across = rise[:, None] * up - climb[:, None] * out
-        form = (bend[:, None, None] * across[:, :, None] * across[:, None]
-                + (rise * scale)[:, None, None] * around[:, :, None] * around[:, None])
-        return value, rise[:, None] * out + climb[:, None] * up, form
+        in_meridian = bend[:, None, None] * across[:, :, None] * across[:, None]
+        about_axis = (rise * scale)[:, None, None] * around[:, :, None] * around[:, None]
+        slopes = rise[:, None] * out + climb[:, None] * up
+        return value, slopes, in_meridian + about_axis
 
     def plane_gap(self, slope_of: Array) -> Array:
         """Gap between the piece's supporting plane and the cell's own plane; -inf where the cell has none."""
@@ -162,7 +176,9 @@ class _LocalFrames(NamedTuple):
         climb = dot(n, self.axis)
         rise = np.sqrt(np.maximum(1 - climb**2, 0))
         a, r, cb, sb, low, top, rim, _ = self.piece.T
-        support = np.where(cb * climb + sb * rise <= 0, a * rise + (low + r) * climb + r, rim * rise + top * climb)
+        by_arc = a * rise + (low + r) * climb + r
+        by_rim = rim * rise + top * climb
+        support = np.where(cb * climb + sb * rise <= 0, by_arc, by_rim)
         gap = dot(n, self.w) - np.abs(dot(n, self.span[:, 2])) - support
         return np.where(size > 1e-100, gap, -np.inf)
 
@@ -174,16 +190,24 @@ class _LocalFrames(NamedTuple):
         a, r, cb, sb, bottom, _, _, _ = self.piece.T
         up = np.einsum("nkc,nc->nk", self.span, self.axis)
         out = np.einsum("nkc,nc->nk", self.span, p) / np.maximum(rho, 1e-12)[:, None]
-        low, side, slant = bottom - z, cb * (rho - a) - sb * (z - bottom - r) - r, cb[:, None] * out - sb[:, None] * up
-        least = low - np.abs(up).sum(axis=1)
+        # Distances from bottom and side, and how that from the side changes; that from the bottom changes by -up.
+        low = bottom - z
+        side = cb * (rho - a) - sb * (z - bottom - r) - r
+        slant = cb[:, None] * out - sb[:, None] * up
+        climbs = np.abs(up).sum(axis=1)
+        least = low - climbs
         for k in range(3):
-            opposite = -up[:, k] * slant[:, k] < 0
-            t = np.where(opposite, slant[:, k] / np.where(opposite, slant[:, k] + up[:, k], 1.0), 1.0)
+            # The mean of both, weighted so that it does not change along this direction.
+            own_up = up[:, k]
+            own_slant = slant[:, k]
+            opposite = -own_up * own_slant < 0
+            t = np.where(opposite, own_slant / np.where(opposite, own_slant + own_up, 1.0), 1.0)
             fall = np.abs(-t[:, None] * up + (1 - t)[:, None] * slant).sum(axis=1)
             least = np.maximum(least, t * low + (1 - t) * side - fall)
-        value, _, climb, _ = piece_distance_numpy(self.piece, np.zeros_like(z), z)
-        least = np.maximum(least, value - np.abs(climb) * np.abs(up).sum(axis=1))
-        return np.where(piece_distance_numpy(self.piece, rho, z)[0] < 0, least, -np.inf)
+        on_axis, _, climb, _ = piece_distance_numpy(self.piece, np.zeros_like(z), z)
+        least = np.maximum(least, on_axis - np.abs(climb) * climbs)
+        value, _, _, _ = piece_distance_numpy(self.piece, rho, z)
+        return np.where(value < 0, least, -np.inf)
 
     def outwards(self) -> Array:
         """Gradient of phi at the centres."""
@@ -199,9 +223,10 @@ def _nearest(slopes: Array, form: Array) -> Array:
     at = np.zeros_like(slopes)
     for _ in range(2):
         for k in range(3):
-            slope = slopes[:, k] + np.einsum("nj,nj->n", form[:, k], at) - form[:, k, k] * at[:, k]
             stiff = form[:, k, k]
-            at[:, k] = np.where(stiff > np.abs(slope), -slope / np.where(stiff > 0, stiff, 1.0), -np.sign(slope))
+            slope = slopes[:, k] + np.einsum("nj,nj->n", form[:, k], at) - stiff * at[:, k]
+            vertex = -slope / np.where(stiff > 0, stiff, 1.0)
+            at[:, k] = np.where(stiff > np.abs(slope), vertex, -np.sign(slope))
     return at
 
 
@@ -214,25 +239,31 @@ def _lowest(slopes: Array, at: Array, corners: _Corners) -> tuple[Array, Array]:
         value = np.einsum("nk,nk->n", slopes[owner, :2], corners.share - at[owner, :2])
         order = np.lexsort((value, owner))
         first = order[np.concatenate([[True], np.diff(owner[order]) > 0])]
-        share[owner[first], :2] = corners.share[first]
-        fall[owner[first]] = value[first] - np.abs(slopes[owner[first], 2]) - (slopes * at)[owner[first], 2]
+        cell = owner[first]
+        share[cell, :2] = corners.share[first]
+        fall[cell] = value[first] - np.abs(slopes[cell, 2]) - (slopes * at)[cell, 2]
     return fall, share
 
 
 def _curved_bounds(sight: _LocalFrames, found: _Cells, value: Array) -> tuple[Array, Array]:
     """The bounds of `enclosing_gap_numpy` where they are worth a look."""
-    lower, upper = np.full(len(value), -np.inf), np.full(len(value), np.inf)
-    rest, e = found.bend[:, 9], found.shape[:, 9]
-    worth = ~found.corners.cut & (rest < BETTER * e) & (rest < np.maximum(np.abs(value), found.shape[:, 10]))
-    lower[worth], upper[worth] = enclosing_gap_numpy(
-        CurvedCells(sight.w[worth], sight.axis[worth], sight.span[worth], found.bend[worth], sight.piece[worth]))
+    lower = np.full(len(value), -np.inf)
+    upper = np.full(len(value), np.inf)
+    e = found.shape[:, 9]
+    radius = found.shape[:, 10]
+    rest = found.bend[:, 9]
+    worth = ~found.corners.cut & (rest < BETTER * e) & (rest < np.maximum(np.abs(value), radius))
+    chosen = CurvedCells(sight.w[worth], sight.axis[worth], sight.span[worth], found.bend[worth], sight.piece[worth])
+    lower[worth], upper[worth] = enclosing_gap_numpy(chosen)
     return lower, upper
 
 
 def _bounds(sight: _LocalFrames, found: _Cells) -> tuple[Array, Array]:
     """Lower bounds of phi over the cells, and values that some of their points do not exceed."""
-    e, radius = found.shape[:, 9], found.shape[:, 10] + np.linalg.norm(sight.span[:, 2], axis=1)
-    zero, cut = np.zeros_like(sight.w), found.corners.cut
+    e = found.shape[:, 9]
+    radius = found.shape[:, 10] + np.linalg.norm(sight.span[:, 2], axis=1)
+    cut = found.corners.cut
+    zero = np.zeros_like(sight.w)
     value, slopes, form = sight.look(zero)
     fall, share = _lowest(slopes, zero, found.corners)
     lower = np.maximum(value - radius, value + fall - e)
@@ -242,22 +273,30 @@ def _bounds(sight: _LocalFrames, found: _Cells) -> tuple[Array, Array]:
     seen, slopes, _ = sight.look(at)
     fall, _ = _lowest(slopes, at, found.corners)
     ball, over = _curved_bounds(sight, found, value)
-    upper = np.where(found.real > 1, np.minimum(value, over), np.where(found.real > 0, value, np.inf))
-    return np.maximum(np.maximum(lower, seen + fall - e), ball), np.where(cut, seen + e, upper)
+    # The centre counts where it is a point of the face, and points beside it where all of the cell is.
+    at_centre = np.where(found.real > 0, value, np.inf)
+    upper = np.where(found.real > 1, np.minimum(value, over), at_centre)
+    lower = np.maximum(lower, seen + fall - e)
+    return np.maximum(lower, ball), np.where(cut, seen + e, upper)
 
 
 def _parts(cells: BoundingTree, front: _Front, found: _Cells, sweep: Array) -> _Front:
     """Both halves of every open triple."""
     motion = sweep > found.shape[:, 10]
     branch = ~motion & ~front.below & (cells.link[front.node, 3] < 0)
-    size = np.stack([np.linalg.norm(found.shape[:, 3:6], axis=1), np.linalg.norm(found.shape[:, 6:9], axis=1)], 1)
+    a = found.shape[:, 3:6]
+    b = found.shape[:, 6:9]
+    size = np.stack([np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)], axis=1)
     across = np.argmax(size, axis=1)
     leaf = ~motion & ~branch
     halves = []
     for side in (0, 1):
-        rect, part, node = front.rect.copy(), front.part.copy(), front.node.copy()
+        rect = front.rect.copy()
+        part = front.part.copy()
+        node = front.node.copy()
         sign = 2 * side - 1
-        part[motion] = np.stack([part[motion, 0] + sign * part[motion, 1] / 2, part[motion, 1] / 2], axis=1)
+        middle, half = part[motion].T
+        part[motion] = np.stack([middle + sign * half / 2, half / 2], axis=1)
         node[branch] = cells.link[front.node[branch], side]
         new = leaf & ~front.below
         rect[new] = cells.leaf[cells.link[front.node[new], 3], :4]
@@ -272,15 +311,21 @@ class VectorisedBranchAndBound:
     """One question about many motions: what was found so far, and the open triples."""
 
     def __init__(self, cells: BoundingTree, tool: ToolData, motions: Array, cutoff: Array) -> None:
-        self.cells, self.motions = cells, motions
+        self.cells = cells
+        self.motions = motions
         self.pieces, self.limits, (_, _, self.resolution), self.relief = tool
-        n, k = len(motions), len(self.pieces)
-        self.least, self.given_up = np.tile(cutoff, (n, 1)), np.full((n, 3), np.inf)
-        self.face, self.point = np.full((n, 3), -1), np.zeros((n, 3, 3))
-        self.blocked, self.looked = np.full(n, -1), np.zeros(n, dtype=np.int64)
-        total = n * k
-        self.front = _Front(np.repeat(np.arange(n), k), np.tile(np.arange(k), n), np.zeros(total, dtype=np.int64),
-                            np.zeros(total, dtype=bool), np.zeros((total, 4)), np.tile([0.0, 1.0], (total, 1)))
+        n = len(motions)
+        k = len(self.pieces)
+        self.least = np.tile(cutoff, (n, 1))
+        self.given_up = np.full((n, 3), np.inf)
+        self.face = np.full((n, 3), -1)
+        self.point = np.zeros((n, 3, 3))
+        self.blocked = np.full(n, -1)
+        self.looked = np.zeros(n, dtype=np.int64)
+        root = np.zeros(n * k, dtype=np.int64)
+        whole_motion = np.tile([0.0, 1.0], (n * k, 1))
+        self.front = _Front(np.repeat(np.arange(n), k), np.tile(np.arange(k), n), root,
+                            np.zeros(n * k, dtype=bool), np.zeros((n * k, 4)), whole_motion)
 
     def run(self) -> None:
         """Look at all triples until none is open, the last ones first so that few stand at a time."""
@@ -303,10 +348,12 @@ class VectorisedBranchAndBound:
             return front
         np.add.at(self.looked, front.query, 1)
         moves = self.motions[front.query]
-        middle, half = front.part[:, :1], front.part[:, 1:]
-        span = np.stack([found.shape[:, 3:6], found.shape[:, 6:9], -half * moves[:, 1]], axis=1)
-        sight = _LocalFrames(found.shape[:, :3] - moves[:, 0] - middle * moves[:, 1], moves[:, 2], span,
-                             self.pieces[front.piece])
+        tip, way, axis = moves.swapaxes(0, 1)
+        middle = front.part[:, :1]
+        half = front.part[:, 1:]
+        q = found.shape[:, :3]
+        span = np.stack([found.shape[:, 3:6], found.shape[:, 6:9], -half * way], axis=1)
+        sight = _LocalFrames(q - tip - middle * way, axis, span, self.pieces[front.piece])
         lower, upper = _bounds(sight, found)
         still = self.weigh(front, found, (lower, upper))
         cut = np.isin(np.arange(len(still)), np.flatnonzero(still))
@@ -327,15 +374,21 @@ class VectorisedBranchAndBound:
         for row in best[np.flatnonzero(upper[best] < self.least[front.query[best], k[best]])]:
             i, c = front.query[row], k[row]
             if asked[row] and upper[row] < self.least[i, c]:
-                self.least[i, c], self.face[i, c], self.point[i, c] = upper[row], face[row], found.shape[row, :3]
+                self.least[i, c] = upper[row]
+                self.face[i, c] = face[row]
+                self.point[i, c] = found.shape[row, :3]
         least = self.least[front.query, k]
-        wanted = least - np.maximum(self.resolution, -0.05 * (least + 0.1)) - extra if self.resolution >= 0 else limit
+        wanted = limit
+        if self.resolution >= 0:  # as `toolaxis.contact.clearance.branch_and_bound.close_enough` says it
+            wanted = least - np.maximum(self.resolution, -0.05 * (least + 0.1)) - extra
         done = lower >= wanted
         over = self.looked[front.query] > BUDGET
         give = asked & (done | over)
         np.minimum.at(self.given_up, (front.query[give], k[give]), lower[give])
         if self.resolution < 0:
-            bad = asked & ~done & ((upper - extra < wanted) | (upper - lower - extra < DECIDED) | over)
+            too_near = upper - extra < wanted
+            decided = upper - lower - extra < DECIDED
+            bad = asked & ~done & (too_near | decided | over)
             self.blocked[front.query[bad]] = k[bad]
             self.face[front.query[bad], k[bad]] = face[bad]
         return np.asarray(asked & ~done & ~over)

@@ -7,6 +7,7 @@ from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 
+#: Halvings towards a border beyond where its lines are as short as a point, and halvings at most.
 _BEYOND, _MOST_GRADED = 4, 24
 
 
@@ -20,9 +21,13 @@ def grid_lines(knots: Array, degree: int, low: float, high: float) -> Array:
     low, high : float
         Range to be covered.
     """
-    ends = np.unique(np.concatenate([[low], knots[(knots > low) & (knots < high)], [high]]))
-    parts = np.maximum(1, np.ceil(np.diff(ends) / (high - low) * (1 if degree == 1 else 8) - 1e-9)).astype(int)
-    pieces = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], parts, strict=True)]
+    inner = knots[(knots > low) & (knots < high)]
+    ends = np.unique(np.concatenate([[low], inner, [high]]))
+    wanted = 1 if degree == 1 else 8
+    shares = np.diff(ends) / (high - low)
+    parts = np.maximum(1, np.ceil(shares * wanted - 1e-9)).astype(int)
+    pieces = [np.linspace(begin, end, count + 1)[:-1]
+              for begin, end, count in zip(ends[:-1], ends[1:], parts, strict=True)]
     return np.concatenate([*pieces, [high]])
 
 
@@ -42,19 +47,23 @@ def grade_lines(face: Face, lines: tuple[Array, Array], across: int, fineness: f
     fineness : float
         Length of a border that counts as a point, mm.
     """
-    own, other = lines[across], lines[1 - across]
+    own = lines[across]
+    other = lines[1 - across]
     more = [own]
     for end, inner in ((own[0], own[1]), (own[-1], own[-2])):
-        reach, first = (_length_along(face, at, other, across) for at in (end, inner))
-        if reach <= fineness < first:
-            count = min(int(np.ceil(np.log2(first / fineness))) + _BEYOND, _MOST_GRADED)
+        border = _length_along(face, end, other, across)
+        beside = _length_along(face, inner, other, across)
+        if border <= fineness < beside:
+            halvings = int(np.ceil(np.log2(beside / fineness)))
+            count = min(halvings + _BEYOND, _MOST_GRADED)
             more.append(end + (inner - end) * 0.5 ** np.arange(1, count + 1))
     return np.unique(np.concatenate(more))
 
 
 def _length_along(face: Face, at: float, other: Array, across: int) -> float:
     """About the length of one line of a grid, mm: never less than the longest of its derivatives says."""
-    uv = np.column_stack([np.full(len(other), at), other])[:, ::1 if across == 0 else -1]
+    same = np.full(len(other), at)
+    uv = np.column_stack([same, other] if across == 0 else [other, same])
     found = face.evaluate(uv)
     rates = np.linalg.norm(found.sv if across == 0 else found.su, axis=1)
     return float(rates.max() * (other[-1] - other[0]))
