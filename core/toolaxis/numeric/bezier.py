@@ -42,8 +42,9 @@ def bezier_rows(knots: Array, degree: int, low: Array, high: Array) -> tuple[Arr
         table = np.broadcast_to(np.eye(degree + 1), (len(low), degree + 1, degree + 1))
         for d in range(1, degree + 1):
             t = low if d <= degree - j else high
-            lower = knots[span[:, None] - degree + d + np.arange(degree + 1 - d)]
-            upper = knots[span[:, None] + 1 + np.arange(degree + 1 - d)]
+            after = span[:, None] + 1 + np.arange(degree + 1 - d)
+            upper = knots[after]
+            lower = knots[after - 1 - degree + d]
             share = ((t[:, None] - lower) / (upper - lower))[:, :, None]
             table = (1 - share) * table[:, :-1] + share * table[:, 1:]
         rows[:, j] = table[:, 0]
@@ -67,8 +68,10 @@ def bezier_nets(data: SurfaceData, breaks_u: Array, breaks_v: Array) -> Array:
     knots_u, knots_v, control, pu, pv, _ = data
     rows_u, first_u = bezier_rows(knots_u, pu, breaks_u[:-1], breaks_u[1:])
     rows_v, first_v = bezier_rows(knots_v, pv, breaks_v[:-1], breaks_v[1:])
-    half = np.einsum("iab,ibjc->iajc", rows_u, control[first_u[:, None] + np.arange(pu + 1)])
-    net = half[:, :, first_v[:, None] + np.arange(pv + 1)]
+    active_u = first_u[:, None] + np.arange(pu + 1)
+    active_v = first_v[:, None] + np.arange(pv + 1)
+    along_u = np.einsum("iab,ibjc->iajc", rows_u, control[active_u])
+    net = along_u[:, :, active_v]
     return np.asarray(np.einsum("jab,icjbd->ijcad", rows_v, net))
 
 
@@ -88,9 +91,11 @@ class _Bounds:
     """
 
     def __init__(self, nets: Array, width_u: Array, width_v: Array) -> None:
-        self.degree, self.width = (nets.shape[2] - 1, nets.shape[3] - 1), (width_u[:, None], width_v[None, :])
+        self.degree = (nets.shape[2] - 1, nets.shape[3] - 1)
+        self.width = (width_u[:, None], width_v[None, :])
         self.w = nets[..., 3:]
-        self.a = nets[..., :3] - self.w * (nets[..., :3] / self.w).mean(axis=(2, 3), keepdims=True)
+        centre = (nets[..., :3] / self.w).mean(axis=(2, 3), keepdims=True)
+        self.a = nets[..., :3] - self.w * centre
         self.least = self.w.min(axis=(2, 3, 4))
         self.known: dict[tuple[int, int], Array] = {(0, 0): _peak(self.a / self.w)}
 
@@ -109,7 +114,8 @@ class _Bounds:
             for i in range(u + 1):
                 for j in range(v + 1):
                     if i + j:
-                        total = total + comb(u, i) * comb(v, j) * self.slope(self.w, (i, j)) * self.of(u - i, v - j)
+                        times = comb(u, i) * comb(v, j)
+                        total = total + times * self.slope(self.w, (i, j)) * self.of(u - i, v - j)
             self.known[u, v] = total / self.least
         return self.known[u, v]
 

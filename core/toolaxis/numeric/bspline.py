@@ -73,41 +73,79 @@ def _basis(knots: Array, place: tuple[int, int], t: float, rows: Array, at: int)
     for d in range(1, degree + 1):
         saved = previous = previous_slope = 0.0
         for r in range(d):
-            upper, lower = knots[span + 1 + r], knots[span + 1 + r - d]
+            upper = knots[span + 1 + r]
+            lower = knots[span + 1 + r - d]
             inverse = 1.0 / (upper - lower)
             share = rows[at, r] * inverse
             if d == degree:
                 slope = rows[at + 2, r] * inverse
-                rows[at + 1, r], previous = d * (previous - share), share
-                rows[at + 2, r], previous_slope = d * (previous_slope - slope), slope
+                rows[at + 1, r] = d * (previous - share)
+                rows[at + 2, r] = d * (previous_slope - slope)
+                previous = share
+                previous_slope = slope
             elif d == degree - 1:
-                rows[at + 2, r], previous = d * (previous - share), share
+                rows[at + 2, r] = d * (previous - share)
+                previous = share
             rows[at, r] = saved + (upper - t) * share
             saved = (t - lower) * share
         rows[at, d] = saved
         if d == degree:
-            rows[at + 1, d], rows[at + 2, d] = d * previous, d * previous_slope
+            rows[at + 1, d] = d * previous
+            rows[at + 2, d] = d * previous_slope
         elif d == degree - 1:
             rows[at + 2, d] = d * previous
 
 
 @jit_uncounted_inline
+def _store_four(rows: Array, row: int, four: Four) -> None:
+    rows[row, 0] = four[0]
+    rows[row, 1] = four[1]
+    rows[row, 2] = four[2]
+    rows[row, 3] = four[3]
+
+
+@jit_uncounted_inline
 def _cubic(knots: Array, span: int, t: float, rows: Array, at: int) -> None:
-    """The recursion of `basis_derivatives` written out for degree 3, with six divisions."""
+    """The recursion of `basis_derivatives` written out for degree 3, with six divisions.
+
+    The knots a to f stand around t, which lies between c and d: `over_c` is how far it is above c, and so on.
+    """
     a, b, c = knots[span - 2], knots[span - 1], knots[span]
     d, e, f = knots[span + 1], knots[span + 2], knots[span + 3]
-    over_c, over_b, over_a = t - c, t - b, t - a
-    under_d, under_e, under_f = d - t, e - t, f - t
+    over_c = t - c
+    over_b = t - b
+    over_a = t - a
+    under_d = d - t
+    under_e = e - t
+    under_f = f - t
     line = 1.0 / (d - c)
-    low, high = line / (d - b), line / (e - c)
-    left, middle, right = 1.0 / (d - a), 1.0 / (e - b), 1.0 / (f - c)
-    p, q = under_d * low, over_c * high
-    x, y, z = under_d * p * left, (over_b * p + under_e * q) * middle, over_c * q * right
-    rows[at, 0], rows[at, 3] = under_d * x, over_c * z
-    rows[at, 1], rows[at, 2] = over_a * x + under_e * y, over_b * y + under_f * z
-    rows[at + 1, 0], rows[at + 1, 1], rows[at + 1, 2], rows[at + 1, 3] = -3.0 * x, 3.0 * (x - y), 3.0 * (y - z), 3.0 * z
-    x, y, z = -6.0 * p * left, 6.0 * (p - q) * middle, 6.0 * q * right
-    rows[at + 2, 0], rows[at + 2, 1], rows[at + 2, 2], rows[at + 2, 3] = -x, x - y, y - z, z
+    low = line / (d - b)
+    high = line / (e - c)
+    left = 1.0 / (d - a)
+    middle = 1.0 / (e - b)
+    right = 1.0 / (f - c)
+    # p and q are functions of degree 1, x, y and z of degree 2, all over the widths of their knots; degree 3 and its
+    # slopes come from the latter
+    p = under_d * low
+    q = over_c * high
+    x = under_d * p * left
+    y = (over_b * p + under_e * q) * middle
+    z = over_c * q * right
+    # Values are computed before they are stored, the ends of the first row before its middle: by this order the
+    # compiler chooses which products are rounded, and so the last digits of all plans.
+    first = under_d * x
+    last = over_c * z
+    rows[at, 0] = first
+    rows[at, 3] = last
+    second = over_a * x + under_e * y
+    third = over_b * y + under_f * z
+    rows[at, 1] = second
+    rows[at, 2] = third
+    _store_four(rows, at + 1, (-3.0 * x, 3.0 * (x - y), 3.0 * (y - z), 3.0 * z))
+    slope_x = -6.0 * p * left
+    slope_y = 6.0 * (p - q) * middle
+    slope_z = 6.0 * q * right
+    _store_four(rows, at + 2, (-slope_x, slope_x - slope_y, slope_y - slope_z, slope_z))
 
 
 @jit_uncounted
@@ -173,20 +211,28 @@ def surface_point(data: SurfaceData, u: float, v: float, work: Array) -> tuple[f
         Scratch.
     """
     knots_u, knots_v, control, pu, pv, rational = data
-    uc, vc = clamp_parameter(knots_u, pu, u), clamp_parameter(knots_v, pv, v)
-    span_u, span_v = find_span(knots_u, pu, uc), find_span(knots_v, pv, vc)
+    uc = clamp_parameter(knots_u, pu, u)
+    vc = clamp_parameter(knots_v, pv, v)
+    span_u = find_span(knots_u, pu, uc)
+    span_v = find_span(knots_v, pv, vc)
     _basis(knots_u, (pu, span_u), uc, work, 0)
     _basis(knots_v, (pv, span_v), vc, work, 3)
-    i0, j0 = span_u - pu, span_v - pv
     x = y = z = w = 0.0
     for i in range(pu + 1):
-        a = b = c = d = 0.0
+        row = span_u - pu + i
+        row_x = row_y = row_z = row_w = 0.0
         for j in range(pv + 1):
+            column = span_v - pv + j
             p = work[3, j]
-            a, b = a + p * control[i0 + i, j0 + j, 0], b + p * control[i0 + i, j0 + j, 1]
-            c, d = c + p * control[i0 + i, j0 + j, 2], d + p * control[i0 + i, j0 + j, 3]
+            row_x += p * control[row, column, 0]
+            row_y += p * control[row, column, 1]
+            row_z += p * control[row, column, 2]
+            row_w += p * control[row, column, 3]
         q = work[0, i]
-        x, y, z, w = x + q * a, y + q * b, z + q * c, w + q * d
+        x += q * row_x
+        y += q * row_y
+        z += q * row_z
+        w += q * row_w
     share = 1.0 / w if rational else 1.0
     return x * share, y * share, z * share
 
@@ -204,24 +250,33 @@ def clamp_parameter(knots: Array, degree: int, t: float) -> float:
 @jit_uncounted_inline
 def _patch(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> SixLanes:
     """The six vectors of the homogeneous coordinates."""
-    (i0, j0), (pu, pv) = first, degree
+    i0, j0 = first
+    pu, pv = degree
     s = su = sv = suu = suv = svv = no_lanes()
     for i in range(pu + 1):
-        a = b = c = no_lanes()
+        along_v = slope_v = bend_v = no_lanes()
         for j in range(pv + 1):
             point = load_lanes(control, i0 + i, j0 + j)
-            a, b, c = (add_scaled(a, work[3, j], point), add_scaled(b, work[4, j], point),
-                       add_scaled(c, work[5, j], point))
-        p, q, r = work[0, i], work[1, i], work[2, i]
-        s, su, sv = add_scaled(s, p, a), add_scaled(su, q, a), add_scaled(sv, p, b)
-        suu, suv, svv = add_scaled(suu, r, a), add_scaled(suv, q, b), add_scaled(svv, p, c)
+            along_v = add_scaled(along_v, work[3, j], point)
+            slope_v = add_scaled(slope_v, work[4, j], point)
+            bend_v = add_scaled(bend_v, work[5, j], point)
+        p = work[0, i]
+        q = work[1, i]
+        r = work[2, i]
+        s = add_scaled(s, p, along_v)
+        su = add_scaled(su, q, along_v)
+        sv = add_scaled(sv, p, slope_v)
+        suu = add_scaled(suu, r, along_v)
+        suv = add_scaled(suv, q, slope_v)
+        svv = add_scaled(svv, p, bend_v)
     return s, su, sv, suu, suv, svv
 
 
 @jit_uncounted_inline
 def weights_of(six: SixLanes) -> Six:
     """The weight and its five derivatives."""
-    return lane(six[0], 3), lane(six[1], 3), lane(six[2], 3), lane(six[3], 3), lane(six[4], 3), lane(six[5], 3)
+    s, su, sv, suu, suv, svv = six
+    return lane(s, 3), lane(su, 3), lane(sv, 3), lane(suu, 3), lane(suv, 3), lane(svv, 3)
 
 
 @jit_uncounted_inline
@@ -232,18 +287,29 @@ def divide_six(six: SixLanes) -> SixLanes:
     s = scale(share, six[0])
     su = scale(share, add_scaled(six[1], -wu, s))
     sv = scale(share, add_scaled(six[2], -wv, s))
-    suu = scale(share, add_scaled(add_scaled(six[3], -2.0 * wu, su), -wuu, s))
-    suv = scale(share, add_scaled(add_scaled(add_scaled(six[4], -wu, sv), -wv, su), -wuv, s))
-    svv = scale(share, add_scaled(add_scaled(six[5], -2.0 * wv, sv), -wvv, s))
+    part = add_scaled(six[3], -2.0 * wu, su)
+    suu = scale(share, add_scaled(part, -wuu, s))
+    part = add_scaled(six[4], -wu, sv)
+    part = add_scaled(part, -wv, su)
+    suv = scale(share, add_scaled(part, -wuv, s))
+    part = add_scaled(six[5], -2.0 * wv, sv)
+    svv = scale(share, add_scaled(part, -wvv, s))
     return s, su, sv, suu, suv, svv
+
+
+@jit_uncounted_inline
+def _store_vector(vector: Lanes, out: Array, row: int) -> None:
+    out[row, 0] = lane(vector, 0)
+    out[row, 1] = lane(vector, 1)
+    out[row, 2] = lane(vector, 2)
 
 
 @jit_uncounted_inline
 def store_slopes(s: Lanes, su: Lanes, sv: Lanes, out: Array) -> None:
     """S, Su and Sv into the first three rows of a (6, 3) array."""
-    out[0, 0], out[0, 1], out[0, 2] = lane(s, 0), lane(s, 1), lane(s, 2)
-    out[1, 0], out[1, 1], out[1, 2] = lane(su, 0), lane(su, 1), lane(su, 2)
-    out[2, 0], out[2, 1], out[2, 2] = lane(sv, 0), lane(sv, 1), lane(sv, 2)
+    _store_vector(s, out, 0)
+    _store_vector(su, out, 1)
+    _store_vector(sv, out, 2)
 
 
 @jit_uncounted_inline
@@ -251,15 +317,16 @@ def store_six(six: SixLanes, out: Array) -> None:
     """The six vectors into a (6, 3) array."""
     s, su, sv, suu, suv, svv = six
     store_slopes(s, su, sv, out)
-    out[3, 0], out[3, 1], out[3, 2] = lane(suu, 0), lane(suu, 1), lane(suu, 2)
-    out[4, 0], out[4, 1], out[4, 2] = lane(suv, 0), lane(suv, 1), lane(suv, 2)
-    out[5, 0], out[5, 1], out[5, 2] = lane(svv, 0), lane(svv, 1), lane(svv, 2)
+    _store_vector(suu, out, 3)
+    _store_vector(suv, out, 4)
+    _store_vector(svv, out, 5)
 
 
 @jit_uncounted_inline
 def _thirds(control: Array, first: tuple[int, int], degree: tuple[int, int], work: Array) -> tuple[Lanes, Lanes]:
     """The mixed third derivatives uuv and uvv of the homogeneous coordinates."""
-    (i0, j0), (pu, pv) = first, degree
+    i0, j0 = first
+    pu, pv = degree
     uuv = uvv = no_lanes()
     for i in range(pu + 1):
         for j in range(pv + 1):
@@ -287,17 +354,23 @@ def _carry_second(second: Lanes, third: Lanes, weights: Five, vectors: FourLanes
     w, wu, wv, wuu, wuv = weights
     s, su, sv, suv = vectors
     both = add_scaled(scale(wuv, su), wu, suv)
-    part = add_scaled(add_scaled(third, -wv, second), -2.0, both)
-    whole = add_scaled(add_scaled(part, -wuu, sv), -lane(third, 3), s)
-    return add_scaled(second, step, shrink(w, whole))
+    part = add_scaled(third, -wv, second)
+    part = add_scaled(part, -2.0, both)
+    part = add_scaled(part, -wuu, sv)
+    part = add_scaled(part, -lane(third, 3), s)
+    return add_scaled(second, step, shrink(w, part))
 
 
 @jit_uncounted_inline
 def extend_six(beyond: tuple[float, float], weights: Six, thirds: tuple[Lanes, Lanes], six: SixLanes) -> SixLanes:
     """The six vectors of the border carried on: S + du Su + dv Sv + du dv Suv, and its derivatives."""
-    (du, dv), (w, wu, wv, wuu, wuv, wvv), (s, su, sv, suu, suv, svv) = beyond, weights, six
+    du, dv = beyond
+    w, wu, wv, wuu, wuv, wvv = weights
+    s, su, sv, suu, suv, svv = six
     uuv, uvv = thirds
-    whole = add_scaled(add_scaled(add_scaled(s, du, su), dv, sv), du * dv, suv)
+    whole = add_scaled(s, du, su)
+    whole = add_scaled(whole, dv, sv)
+    whole = add_scaled(whole, du * dv, suv)
     if du == 0.0:
         suu = _carry_second(suu, uuv, (w, wu, wv, wuu, wuv), (s, su, sv, suv), dv)
     else:
@@ -326,9 +399,11 @@ def _many_cubic(data: SurfaceData, uv: Array, out: Array) -> bool:
     work = np.empty((6, 26))
     inside = True
     for k in range(uv.shape[0]):
-        u, v = clamp_parameter(knots_u, 3, uv[k, 0]), clamp_parameter(knots_v, 3, uv[k, 1])
+        u = clamp_parameter(knots_u, 3, uv[k, 0])
+        v = clamp_parameter(knots_v, 3, uv[k, 1])
         inside = inside and u == uv[k, 0] and v == uv[k, 1]
-        span_u, span_v = find_span(knots_u, 3, u), find_span(knots_v, 3, v)
+        span_u = find_span(knots_u, 3, u)
+        span_v = find_span(knots_v, 3, v)
         _cubic(knots_u, span_u, u, work, 0)
         _cubic(knots_v, span_v, v, work, 3)
         six = _patch(control, (span_u - 3, span_v - 3), (3, 3), work)
@@ -380,11 +455,13 @@ def basis_derivatives_numpy(knots: Array, degree: int, t: Array) -> tuple[Array,
     """
     last = np.flatnonzero(knots < knots[len(knots) - degree - 1])[-1]
     span = np.clip(np.searchsorted(knots, t, side="right") - 1, degree, last)
-    levels: list[Array] = [np.ones((len(t), 1))]
+    levels: list[Array] = [np.ones((len(t), 1))]  # the functions of each degree from 0
     for d in range(1, degree + 1):
-        previous, row = levels[-1], np.zeros((len(t), d + 1))
+        previous = levels[-1]
+        row = np.zeros((len(t), d + 1))
         for r in range(d):
-            lower, upper = knots[span + 1 + r - d], knots[span + 1 + r]
+            lower = knots[span + 1 + r - d]
+            upper = knots[span + 1 + r]
             share = previous[:, r] / (upper - lower)
             row[:, r] += (upper - t) * share
             row[:, r + 1] += (t - lower) * share
@@ -393,14 +470,17 @@ def basis_derivatives_numpy(knots: Array, degree: int, t: Array) -> tuple[Array,
     rows[:, 0] = levels[degree]
     rows[:, 1] = _slopes(knots, degree, span, levels[degree - 1])
     if degree > 1:
-        rows[:, 2] = _slopes(knots, degree, span, _slopes(knots, degree - 1, span, levels[degree - 2]))
+        lower_slopes = _slopes(knots, degree - 1, span, levels[degree - 2])
+        rows[:, 2] = _slopes(knots, degree, span, lower_slopes)
     return rows, span - degree
 
 
 def _slopes(knots: Array, d: int, span: NDArray[np.intp], lower: Array) -> Array:
+    """Slopes of the functions of degree d, (n, d + 1), from those of the degree below, (n, d)."""
     rows = np.zeros((len(span), d + 1))
     for k in range(d):
-        value = d * lower[:, k] / (knots[span + 1 + k] - knots[span + 1 + k - d])
+        width = knots[span + 1 + k] - knots[span + 1 + k - d]
+        value = d * lower[:, k] / width
         rows[:, k] -= value
         rows[:, k + 1] += value
     return rows
@@ -413,20 +493,27 @@ def surface_derivatives_many_numpy(data: SurfaceData, uv: Array) -> Array:
     """
     knots_u, knots_v, control, pu, pv, _ = data
     uv = np.asarray(uv, dtype=float)
-    inside = np.column_stack([np.clip(uv[:, 0], knots_u[pu], knots_u[-pu - 1]),
-                              np.clip(uv[:, 1], knots_v[pv], knots_v[-pv - 1])])
-    bu, iu = basis_derivatives_numpy(knots_u, pu, inside[:, 0])
-    bv, iv = basis_derivatives_numpy(knots_v, pv, inside[:, 1])
-    net = control[(iu[:, None] + np.arange(pu + 1))[:, :, None], (iv[:, None] + np.arange(pv + 1))[:, None, :]]
-    h = np.einsum("nai,nbj,nijc->nabc", bu, bv, net)
-    return _extend_numpy(*_quotient(h), uv - inside)
+    u = np.clip(uv[:, 0], knots_u[pu], knots_u[-pu - 1])
+    v = np.clip(uv[:, 1], knots_v[pv], knots_v[-pv - 1])
+    basis_u, first_u = basis_derivatives_numpy(knots_u, pu, u)
+    basis_v, first_v = basis_derivatives_numpy(knots_v, pv, v)
+    rows = first_u[:, None] + np.arange(pu + 1)
+    columns = first_v[:, None] + np.arange(pv + 1)
+    net = control[rows[:, :, None], columns[:, None, :]]
+    h = np.einsum("nai,nbj,nijc->nabc", basis_u, basis_v, net)
+    return _extend_numpy(*_quotient(h), uv - np.column_stack([u, v]))
 
 
 def _quotient(h: NDArray[Any]) -> tuple[Array, Array, Array]:
     """The six vectors, Suuv and Suvv of a quotient, from the table h[n, a, b, xyzw] of its parts' derivatives."""
-    w = h[..., 3:] / h[:, :1, :1, 3:]
-    part = h[..., :3] / h[:, :1, :1, 3:]
-    wu, wv, wuu, wuv, wvv = w[:, 1, 0], w[:, 0, 1], w[:, 2, 0], w[:, 1, 1], w[:, 0, 2]
+    weight = h[:, :1, :1, 3:]
+    w = h[..., 3:] / weight
+    part = h[..., :3] / weight
+    wu = w[:, 1, 0]
+    wv = w[:, 0, 1]
+    wuu = w[:, 2, 0]
+    wuv = w[:, 1, 1]
+    wvv = w[:, 0, 2]
     s = part[:, 0, 0]
     su = part[:, 1, 0] - wu * s
     sv = part[:, 0, 1] - wv * s
@@ -439,7 +526,13 @@ def _quotient(h: NDArray[Any]) -> tuple[Array, Array, Array]:
 
 
 def _extend_numpy(out: Array, suuv: Array, suvv: Array, beyond: Array) -> Array:
-    du, dv = beyond[:, :1], beyond[:, 1:]
+    """The six vectors of the border carried on, as `extend_six` does it."""
+    du = beyond[:, :1]
+    dv = beyond[:, 1:]
     s, su, sv, suu, suv, svv = (out[:, k] for k in range(6))
-    suu_on, svv_on = np.where(du != 0, 0.0 * du, suu + dv * suuv), np.where(dv != 0, 0.0 * dv, svv + du * suvv)
-    return np.stack([s + du * su + dv * sv + du * dv * suv, su + dv * suv, sv + du * suv, suu_on, suv, svv_on], axis=1)
+    point = s + du * su + dv * sv + du * dv * suv
+    along_u = su + dv * suv
+    along_v = sv + du * suv
+    bend_u = np.where(du != 0, 0.0 * du, suu + dv * suuv)
+    bend_v = np.where(dv != 0, 0.0 * dv, svv + du * suvv)
+    return np.stack([point, along_u, along_v, bend_u, suv, bend_v], axis=1)

@@ -29,8 +29,11 @@ Array = NDArray[np.float64]
 Four: TypeAlias = tuple[float, float, float, float]
 Rows: TypeAlias = tuple[Four, Four, Four]
 
-#: Columns of a span that is kept: its six knots, the first one of them two below its beginning, five shares, and where
-#: parameters of the domain belong to another one.
+#: Columns of a span that is kept: the six knots around it, which is from c to d; one over distances of theirs, or for
+#: degree 3 over the products of two (LOW and HIGH); and where parameters of the domain belong to another span.
+_A, _B, _C, _D, _E, _F = range(6)
+_LOW, _HIGH, _LEFT, _MIDDLE, _RIGHT, _END = range(6, 12)
+_LINE = _LOW  # of degrees 1 and 2
 _KEPT = 12
 
 
@@ -53,31 +56,47 @@ def new_walk() -> SurfaceWalk:
 @jit_uncounted
 def _keep_span(knots: Array, degree: int, t: float, walk: SurfaceWalk, side: int) -> None:
     """Keep the span of a parameter of the domain."""
-    span, kept, end = find_span(knots, degree, t), walk.kept, knots.shape[0] - degree - 1
+    span = find_span(knots, degree, t)
+    kept = walk.kept
+    end = knots.shape[0] - degree - 1
     for k in range(4):
         walk.points[side, k] = min(span - degree + k, end - 1)
-    c, d = knots[span], knots[span + 1]
+    c = knots[span]
+    d = knots[span + 1]
     line = 1.0 / (d - c)
-    kept[side, 2], kept[side, 3], kept[side, 6] = c, d, line
-    kept[side, 11] = np.inf if d == knots[end] else d
-    if degree > 1:
-        b, e = knots[span - 1], knots[span + 2]
-        kept[side, 1], kept[side, 4] = b, e
-        kept[side, 8], kept[side, 9] = 1.0 / (d - b), 1.0 / (e - c)
-    if degree > 2:
-        a, b, e, f = knots[span - 2], knots[span - 1], knots[span + 2], knots[span + 3]
-        kept[side, 0], kept[side, 5] = a, f
-        kept[side, 6], kept[side, 7] = line / (d - b), line / (e - c)
-        kept[side, 8], kept[side, 9], kept[side, 10] = 1.0 / (d - a), 1.0 / (e - b), 1.0 / (f - c)
+    kept[side, _C] = c
+    kept[side, _D] = d
+    kept[side, _END] = np.inf if d == knots[end] else d
+    if degree == 1:
+        kept[side, _LINE] = line
+        return
+    b = knots[span - 1]
+    e = knots[span + 2]
+    kept[side, _B] = b
+    kept[side, _E] = e
+    if degree == 2:
+        kept[side, _LINE] = line
+        kept[side, _LEFT] = 1.0 / (d - b)
+        kept[side, _MIDDLE] = 1.0 / (e - c)
+        return
+    a = knots[span - 2]
+    f = knots[span + 3]
+    kept[side, _A] = a
+    kept[side, _F] = f
+    kept[side, _LOW] = line / (d - b)
+    kept[side, _HIGH] = line / (e - c)
+    kept[side, _LEFT] = 1.0 / (d - a)
+    kept[side, _MIDDLE] = 1.0 / (e - b)
+    kept[side, _RIGHT] = 1.0 / (f - c)
 
 
 @jit_uncounted_inline
 def _enter_span(knots: Array, degree: int, t: float, walk: SurfaceWalk, side: int) -> float:
     """The nearest parameter of the domain, with its span kept."""
     kept = walk.kept
-    if not kept[side, 2] <= t < kept[side, 3]:
+    if not kept[side, _C] <= t < kept[side, _D]:
         t = clamp_parameter(knots, degree, t)
-        if not kept[side, 2] <= t < kept[side, 11]:
+        if not kept[side, _C] <= t < kept[side, _END]:
             _keep_span(knots, degree, t, walk, side)
     return t
 
@@ -88,30 +107,50 @@ def _basis_rows(walk: SurfaceWalk, degree: int, side: int, t: float) -> Rows:
     if degree == 3:
         return _cubic_rows(walk, side, t)
     kept = walk.kept
-    over_c, under_d = t - kept[side, 2], kept[side, 3] - t
-    line = kept[side, 6]
+    over_c = t - kept[side, _C]
+    under_d = kept[side, _D] - t
+    line = kept[side, _LINE]
     if degree == 1:
-        return (under_d * line, over_c * line, 0.0, 0.0), (-line, line, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
-    over_b, under_e = t - kept[side, 1], kept[side, 4] - t
-    left, right = kept[side, 8], kept[side, 9]
-    x, y = under_d * line * left, over_c * line * right
+        value = under_d * line, over_c * line, 0.0, 0.0
+        slope = -line, line, 0.0, 0.0
+        return value, slope, (0.0, 0.0, 0.0, 0.0)
+    over_b = t - kept[side, _B]
+    under_e = kept[side, _E] - t
+    left = kept[side, _LEFT]
+    right = kept[side, _MIDDLE]
+    x = under_d * line * left
+    y = over_c * line * right
+    p = line * left
+    q = line * right
     value = under_d * x, over_b * x + under_e * y, over_c * y, 0.0
-    p, q = line * left, line * right
-    return value, (-2.0 * x, 2.0 * (x - y), 2.0 * y, 0.0), (2.0 * p, 2.0 * (-p - q), 2.0 * q, 0.0)
+    slope = -2.0 * x, 2.0 * (x - y), 2.0 * y, 0.0
+    return value, slope, (2.0 * p, 2.0 * (-p - q), 2.0 * q, 0.0)
 
 
 @jit_uncounted_inline
 def _cubic_rows(walk: SurfaceWalk, side: int, t: float) -> Rows:
+    """The same for degree 3; the names are those of `toolaxis.numeric.bspline`'s recursion."""
     kept = walk.kept
-    over_c, over_b, over_a = t - kept[side, 2], t - kept[side, 1], t - kept[side, 0]
-    under_d, under_e, under_f = kept[side, 3] - t, kept[side, 4] - t, kept[side, 5] - t
-    left, middle, right = kept[side, 8], kept[side, 9], kept[side, 10]
-    p, q = under_d * kept[side, 6], over_c * kept[side, 7]
-    x, y, z = under_d * p * left, (over_b * p + under_e * q) * middle, over_c * q * right
+    over_c = t - kept[side, _C]
+    over_b = t - kept[side, _B]
+    over_a = t - kept[side, _A]
+    under_d = kept[side, _D] - t
+    under_e = kept[side, _E] - t
+    under_f = kept[side, _F] - t
+    left = kept[side, _LEFT]
+    middle = kept[side, _MIDDLE]
+    right = kept[side, _RIGHT]
+    p = under_d * kept[side, _LOW]
+    q = over_c * kept[side, _HIGH]
+    x = under_d * p * left
+    y = (over_b * p + under_e * q) * middle
+    z = over_c * q * right
     value = under_d * x, over_a * x + under_e * y, over_b * y + under_f * z, over_c * z
     slope = -3.0 * x, 3.0 * (x - y), 3.0 * (y - z), 3.0 * z
-    x, y, z = -6.0 * p * left, 6.0 * (p - q) * middle, 6.0 * q * right
-    return value, slope, (-x, x - y, y - z, z)
+    slope_x = -6.0 * p * left
+    slope_y = 6.0 * (p - q) * middle
+    slope_z = 6.0 * q * right
+    return value, slope, (-slope_x, slope_x - slope_y, slope_y - slope_z, slope_z)
 
 
 @jit_uncounted_inline
@@ -125,16 +164,23 @@ def _combine(shares: Four, lanes: FourLanes) -> Lanes:
 @jit_uncounted_inline
 def _load_row(control: Array, walk: SurfaceWalk, i: int) -> FourLanes:
     """Four control points along v."""
-    at, points = walk.points[0, i], walk.points
-    return (load_lanes(control, at, points[1, 0]), load_lanes(control, at, points[1, 1]),
-            load_lanes(control, at, points[1, 2]), load_lanes(control, at, points[1, 3]))
+    points = walk.points
+    row = points[0, i]
+    first = load_lanes(control, row, points[1, 0])
+    second = load_lanes(control, row, points[1, 1])
+    third = load_lanes(control, row, points[1, 2])
+    fourth = load_lanes(control, row, points[1, 3])
+    return first, second, third, fourth
 
 
 @jit_uncounted_inline
 def _combine_rows(control: Array, walk: SurfaceWalk, shares: Four) -> FourLanes:
     """The sums along v of four rows."""
-    return (_combine(shares, _load_row(control, walk, 0)), _combine(shares, _load_row(control, walk, 1)),
-            _combine(shares, _load_row(control, walk, 2)), _combine(shares, _load_row(control, walk, 3)))
+    first = _combine(shares, _load_row(control, walk, 0))
+    second = _combine(shares, _load_row(control, walk, 1))
+    third = _combine(shares, _load_row(control, walk, 2))
+    fourth = _combine(shares, _load_row(control, walk, 3))
+    return first, second, third, fourth
 
 
 @jit_uncounted_inline
@@ -168,18 +214,28 @@ def walk_derivatives(data: SurfaceData, u: float, v: float, out: Array, walk: Su
     if not (1 <= pu <= 3 and 1 <= pv <= 3):
         any_derivatives(data, u, v, out, walk.basis)
         return
-    uc, vc = _enter_span(knots_u, pu, u, walk, 0), _enter_span(knots_v, pv, v, walk, 1)
-    rows_u, rows_v = _basis_rows(walk, pu, 0, uc), _basis_rows(walk, pv, 1, vc)
-    (p, q, r), (x, y, z) = rows_u, rows_v
-    a, b, c = _combine_rows(control, walk, x), _combine_rows(control, walk, y), _combine_rows(control, walk, z)
-    six = _combine(p, a), _combine(q, a), _combine(p, b), _combine(r, a), _combine(q, b), _combine(p, c)
+    uc = _enter_span(knots_u, pu, u, walk, 0)
+    vc = _enter_span(knots_v, pv, v, walk, 1)
+    p, q, r = _basis_rows(walk, pu, 0, uc)
+    x, y, z = _basis_rows(walk, pv, 1, vc)
+    along_v = _combine_rows(control, walk, x)
+    slope_v = _combine_rows(control, walk, y)
+    bend_v = _combine_rows(control, walk, z)
+    s = _combine(p, along_v)
+    su = _combine(q, along_v)
+    sv = _combine(p, slope_v)
+    suu = _combine(r, along_v)
+    suv = _combine(q, slope_v)
+    svv = _combine(p, bend_v)
+    six = s, su, sv, suu, suv, svv
     weights = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if rational:
         weights = weights_of(six)
         six = divide_six(six)
     if u != uc or v != vc:
-        thirds = _combine_products(control, walk, r, y), _combine_products(control, walk, q, z)
-        six = extend_six((u - uc, v - vc), weights, thirds, six)
+        uuv = _combine_products(control, walk, r, y)
+        uvv = _combine_products(control, walk, q, z)
+        six = extend_six((u - uc, v - vc), weights, (uuv, uvv), six)
     store_six(six, out)
 
 
@@ -201,20 +257,32 @@ def walk_slopes(data: SurfaceData, u: float, v: float, out: Array, walk: Surface
     if not (1 <= pu <= 3 and 1 <= pv <= 3):
         any_derivatives(data, u, v, out, walk.basis)
         return
-    uc, vc = _enter_span(knots_u, pu, u, walk, 0), _enter_span(knots_v, pv, v, walk, 1)
-    (p, q, _), (x, y, _) = _basis_rows(walk, pu, 0, uc), _basis_rows(walk, pv, 1, vc)
-    a, b = _combine_rows(control, walk, x), _combine_rows(control, walk, y)
-    s, su, sv = _combine(p, a), _combine(q, a), _combine(p, b)
+    uc = _enter_span(knots_u, pu, u, walk, 0)
+    vc = _enter_span(knots_v, pv, v, walk, 1)
+    p, q, _ = _basis_rows(walk, pu, 0, uc)
+    x, y, _ = _basis_rows(walk, pv, 1, vc)
+    along_v = _combine_rows(control, walk, x)
+    slope_v = _combine_rows(control, walk, y)
+    s = _combine(p, along_v)
+    su = _combine(q, along_v)
+    sv = _combine(p, slope_v)
     if rational:
         if u != uc or v != vc:
             any_derivatives(data, u, v, out, walk.basis)
             return
         share = 1.0 / lane(s, 3)
-        wu, wv = lane(su, 3), lane(sv, 3)
+        wu = lane(su, 3)
+        wv = lane(sv, 3)
         s = scale(share, s)
-        su, sv = scale(share, add_scaled(su, -wu, s)), scale(share, add_scaled(sv, -wv, s))
+        su = scale(share, add_scaled(su, -wu, s))
+        sv = scale(share, add_scaled(sv, -wv, s))
     elif u != uc or v != vc:
-        suv, du, dv = _combine(q, b), u - uc, v - vc
-        s = add_scaled(add_scaled(add_scaled(s, du, su), dv, sv), du * dv, suv)
-        su, sv = add_scaled(su, dv, suv), add_scaled(sv, du, suv)
+        suv = _combine(q, slope_v)
+        du = u - uc
+        dv = v - vc
+        s = add_scaled(s, du, su)
+        s = add_scaled(s, dv, sv)
+        s = add_scaled(s, du * dv, suv)
+        su = add_scaled(su, dv, suv)
+        sv = add_scaled(sv, du, suv)
     store_slopes(s, su, sv, out)

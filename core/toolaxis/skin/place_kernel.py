@@ -47,11 +47,16 @@ def _search_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array,
         surface_derivatives(data, uv[0], uv[1], d, work)
         x = place[0] - (_part(rows, 0, d[0]) - _part(rows, 0, origin))
         y = place[1] - (_part(rows, 1, d[0]) - _part(rows, 1, origin))
-        ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
+        ax = _part(rows, 0, d[1])
+        ay = _part(rows, 1, d[1])
+        bx = _part(rows, 0, d[2])
+        by = _part(rows, 1, d[2])
         det = ax * by - ay * bx
-        along_u, along_v = 0.0, 0.0
+        along_u = 0.0
+        along_v = 0.0
         if abs(det) > PARALLEL * np.sqrt(ax * ax + ay * ay) * np.sqrt(bx * bx + by * by):
-            along_u, along_v = (x * by - y * bx) / det, (ax * y - ay * x) / det
+            along_u = (x * by - y * bx) / det
+            along_v = (ax * y - ay * x) / det
         size = max(abs(along_u) / ends[0, 1], abs(along_v) / ends[1, 1])
         shorter = FAR / size if size > FAR else 1.0
         uv[0] += shorter * along_u
@@ -91,19 +96,28 @@ def find_place(data: SurfaceData, frame: PlaceFrame, place: Array, uv: Array, d:
     work : (6, 26) array
         What is in it does not count.
     """
-    u, v, ends = uv[0], uv[1], frame.ends
+    u = uv[0]
+    v = uv[1]
+    ends = frame.ends
     away = _search_place(data, frame, place, uv, d, work)
     if away > 0.0:
-        best_u, best_v = uv[0], uv[1]
+        best_u = uv[0]
+        best_v = uv[1]
         for share in BESIDE:
             for in_u, in_v in ((-share, 0.0), (share, 0.0), (0.0, -share), (0.0, share)):
                 if away == 0.0:
                     break
-                uv[0], uv[1] = u + in_u * ends[0, 1], v + in_v * ends[1, 1]
+                beside_u = u + in_u * ends[0, 1]
+                beside_v = v + in_v * ends[1, 1]
+                uv[0] = beside_u
+                uv[1] = beside_v
                 left = _search_place(data, frame, place, uv, d, work)
                 if left < away:
-                    away, best_u, best_v = left, uv[0], uv[1]
-        uv[0], uv[1] = best_u, best_v
+                    away = left
+                    best_u = uv[0]
+                    best_v = uv[1]
+        uv[0] = best_u
+        uv[1] = best_v
         surface_derivatives(data, uv[0], uv[1], d, work)
 
 
@@ -139,23 +153,36 @@ def turn_place_into_plane(rows: Array, d: Array, memory: Array) -> None:
     memory : (7, 3) array
         What is in it does not count.
     """
-    rate, first, bend = memory[0:2], memory[2:4], memory[4:7]
-    ax, ay, bx, by = _part(rows, 0, d[1]), _part(rows, 1, d[1]), _part(rows, 0, d[2]), _part(rows, 1, d[2])
+    rate = memory[0:2]  # of u and v with x, and with y
+    first = memory[2:4]
+    bend = memory[4:7]
+    ax = _part(rows, 0, d[1])
+    ay = _part(rows, 1, d[1])
+    bx = _part(rows, 0, d[2])
+    by = _part(rows, 1, d[2])
     det = ax * by - ay * bx
     if not abs(det) > 0.0:
         det = np.finfo(np.float64).tiny
-    # rates of u and v with x, and with y
-    rate[0, 0], rate[0, 1], rate[1, 0], rate[1, 1] = by / det, -ay / det, -bx / det, ax / det
+    u_with_x = by / det
+    u_with_y = -ay / det
+    v_with_x = -bx / det
+    v_with_y = ax / det
+    rate[0, 0] = u_with_x
+    rate[0, 1] = u_with_y
+    rate[1, 0] = v_with_x
+    rate[1, 1] = v_with_y
     for k in range(2):
         for c in range(3):
             first[k, c] = d[1, c] * rate[k, 0] + d[2, c] * rate[k, 1]
     for n in range(3):
-        p, q = (0 if n < 2 else 1), (0 if n < 1 else 1)
+        p = 0 if n < 2 else 1  # the second derivatives xx, xy and yy, as pairs of rates
+        q = 0 if n < 1 else 1
         for c in range(3):
             bend[n, c] = (d[3, c] * rate[p, 0] * rate[q, 0] + d[5, c] * rate[p, 1] * rate[q, 1]
                           + d[4, c] * (rate[p, 0] * rate[q, 1] + rate[p, 1] * rate[q, 0]))
     for n in range(3):
-        x, y = _part(rows, 0, bend[n]), _part(rows, 1, bend[n])
+        x = _part(rows, 0, bend[n])
+        y = _part(rows, 1, bend[n])
         for c in range(3):
             d[3 + n, c] = bend[n, c] - first[0, c] * x - first[1, c] * y
     for k in range(2):

@@ -83,10 +83,12 @@ def convex_pieces(pieces: Array) -> ConvexBodies:
     """
     count = len(pieces)
     centre = np.zeros((count, 2, 3))
-    centre[:, 0, 2], centre[:, 1, 2] = pieces[:, 4] + pieces[:, 1], pieces[:, 5]
+    centre[:, 0, 2] = pieces[:, 4] + pieces[:, 1]
+    centre[:, 1, 2] = pieces[:, 5]
+    upwards = np.tile([0.0, 0.0, 1.0], (count, 2, 1))
+    radii = pieces[:, [0, 6]]
     ball = np.stack([pieces[:, 1], np.zeros(count)], axis=1)
-    return ConvexBodies(centre, np.tile([0.0, 0.0, 1.0], (count, 2, 1)), pieces[:, [0, 6]], ball,
-                        np.zeros((count, 3, 3)))
+    return ConvexBodies(centre, upwards, radii, ball, np.zeros((count, 3, 3)))
 
 
 @jit_fma_inline
@@ -103,23 +105,41 @@ def piece_distance(piece: Array | tuple[float, ...], rho: float, z: float) -> tu
     -------
     distance, slope along rho, slope along z, curvature in the meridian plane (1/mm; 0 next to straight parts)
     """
-    a, r, cb, sb = piece[0], piece[1], piece[2], piece[3]
-    x, y = rho - a, z - piece[4] - r
-    x_rim, y_rim = rho - piece[6], z - piece[5]
-    best, along_rho, along_z, bend = piece[4] - z, 0.0, -1.0, 0.0
+    r = piece[1]
+    cb = piece[2]
+    sb = piece[3]
+    # From the middle of the corner's arc, and from the top edge.
+    x = rho - piece[0]
+    y = z - piece[4] - r
+    x_rim = rho - piece[6]
+    y_rim = z - piece[5]
+    best = piece[4] - z
+    along_rho = 0.0
+    along_z = -1.0
+    bend = 0.0
     side = cb * x - sb * y - r
     if side > best:
-        best, along_rho, along_z = side, cb, -sb
+        best = side
+        along_rho = cb
+        along_z = -sb
     if y_rim > best:
-        best, along_rho, along_z = y_rim, 0.0, 1.0
+        best = y_rim
+        along_rho = 0.0
+        along_z = 1.0
     if x > 0.0 and cb * y + sb * x < 0.0:
         length = np.sqrt(x * x + y * y)
         if length - r > best:
-            best, along_rho, along_z, bend = length - r, x / length, y / length, 1.0 / length
+            best = length - r
+            along_rho = x / length
+            along_z = y / length
+            bend = 1.0 / length
     if x_rim > 0.0 and cb * y_rim + sb * x_rim > 0.0:
         length = np.sqrt(x_rim * x_rim + y_rim * y_rim)
         if length > best:
-            best, along_rho, along_z, bend = length, x_rim / length, y_rim / length, 1.0 / length
+            best = length
+            along_rho = x_rim / length
+            along_z = y_rim / length
+            bend = 1.0 / length
     return best, along_rho, along_z, bend
 
 
@@ -129,17 +149,28 @@ def piece_distance_numpy(piece: Array, rho: Array, z: Array) -> tuple[Array, Arr
     Parameters and result as there; ``piece`` may have leading axes that broadcast against ``rho``.
     """
     a, r, cb, sb, low, top, rim = (piece[..., k] for k in range(7))
-    x, y, x_rim, y_rim = rho - a, z - low - r, rho - rim, z - top
-    d, d_rim = np.hypot(x, y), np.hypot(x_rim, y_rim)
-    ok, ok_rim = (x > 0) & (cb * y + sb * x < 0), (x_rim > 0) & (cb * y_rim + sb * x_rim > 0)
-    options = np.stack(np.broadcast_arrays(low - z, cb * x - sb * y - r, y_rim, np.where(ok, d - r, -np.inf),
-                                           np.where(ok_rim, d_rim, -np.inf)))
+    # From the middle of the corner's arc, and from the top edge.
+    x = rho - a
+    y = z - low - r
+    x_rim = rho - rim
+    y_rim = z - top
+    d = np.hypot(x, y)
+    d_rim = np.hypot(x_rim, y_rim)
+    on_arc = (x > 0) & (cb * y + sb * x < 0)
+    on_rim = (x_rim > 0) & (cb * y_rim + sb * x_rim > 0)
+    from_bottom = low - z
+    from_side = cb * x - sb * y - r
+    from_arc = np.where(on_arc, d - r, -np.inf)
+    from_rim = np.where(on_rim, d_rim, -np.inf)
+    options = np.stack(np.broadcast_arrays(from_bottom, from_side, y_rim, from_arc, from_rim))
     pick = np.argmax(options, axis=0)
     value = np.take_along_axis(options, pick[None], axis=0)[0]
-    safe, safe_rim = np.where(d > 0, d, 1.0), np.where(d_rim > 0, d_rim, 1.0)
+    safe = np.where(d > 0, d, 1.0)
+    safe_rim = np.where(d_rim > 0, d_rim, 1.0)
     along_rho = np.choose(pick, [0.0, cb, 0.0, x / safe, x_rim / safe_rim])
     along_z = np.choose(pick, [-1.0, -sb, 1.0, y / safe, y_rim / safe_rim])
-    return value, along_rho, along_z, np.choose(pick, [0.0, 0.0, 0.0, 1 / safe, 1 / safe_rim])
+    bend = np.choose(pick, [0.0, 0.0, 0.0, 1 / safe, 1 / safe_rim])
+    return value, along_rho, along_z, bend
 
 
 class Distance(NamedTuple):
@@ -156,7 +187,9 @@ def _nearest_piece(pieces: Array, rho: Array, z: Array, out: Array) -> None:
         for p in range(pieces.shape[0]):
             value, along_rho, along_z, _ = piece_distance(pieces[p], rho[k], z[k])
             if value < out[k, 0]:
-                out[k, 0], out[k, 1], out[k, 2] = value, along_rho, along_z
+                out[k, 0] = value
+                out[k, 1] = along_rho
+                out[k, 2] = along_z
 
 
 def nearest_piece(pieces: Array, rho: Array, z: Array) -> Array:
@@ -187,33 +220,46 @@ def nearest_piece_numpy(pieces: Array, rho: Array, z: Array) -> Array:
 
 def _envelope(pieces: Array) -> tuple[Array, Array]:
     """Straight border lines of the union in the meridian plane, (k, 2, 2), and the cutter's arc rows, (m, 4)."""
-    thick = pieces[pieces[:, 5] > pieces[:, 4]]
-    start = thick[:, 4] + thick[:, 1] * (1 - thick[:, 3])
-    base = thick[:, 0] + thick[:, 1] * thick[:, 2]
-    slope = thick[:, 3] / thick[:, 2]
-    heights = [thick[:, 4], thick[:, 5], start]
-    for i in range(len(thick)):
-        steeper = np.flatnonzero(slope[i] != slope)
-        meet = (base[steeper] - slope[steeper] * start[steeper] - base[i] + slope[i] * start[i]) / (
-            slope[i] - slope[steeper])
-        heights.append(meet[(meet > start[i]) & (meet < thick[i, 5])])
-    z = np.unique(np.concatenate(heights))
-    z = z[np.concatenate([[True], np.diff(z) > 1e-9 * (z[-1] - z[0])])]
-    middle = (z[:-1] + z[1:]) / 2
-    over = (middle[:, None] > start) & (middle[:, None] < thick[:, 5])
+    flat, corner, cosine, sine, bottom, top = pieces[pieces[:, 5] > pieces[:, 4], :6].T
+    # The straight side of each begins where its corner's arc ends, with that radius, and widens by the slope.
+    start = bottom + corner * (1 - sine)
+    base = flat + corner * cosine
+    slope = sine / cosine
+    z = _envelope_heights(bottom, top, start, base, slope)
+    low = z[:-1]
+    high = z[1:]
+    middle = (low + high) / 2
+    # Between two heights that follow each other, one side is the widest all the way.
+    over = (middle[:, None] > start) & (middle[:, None] < top)
     radius = np.where(over, base + slope * (middle[:, None] - start), -1.0)
-    top = np.argmax(radius, axis=1)
-    arc = np.array([((m > thick[:, 4]) & (m < start)).any() for m in middle])
-    ends = np.stack([base[top] + slope[top] * (h - start[top]) for h in (z[:-1], z[1:])], axis=1)
+    widest = np.argmax(radius, axis=1)
+    ends = np.stack([base[widest] + slope[widest] * (h - start[widest]) for h in (low, high)], axis=1)
     ends[~over.any(axis=1)] = 0.0
-    first = int(np.argmin(thick[:, 4]))
-    ends[arc] = [[thick[first, 0], base[first]]] if arc.any() else 0.0
-    sides = [np.array([[e[0], lo], [e[1], hi]]) for e, lo, hi, bent in zip(ends, z[:-1], z[1:], arc, strict=True)
-             if not bent and e.any()]
-    inner = np.concatenate([[0.0], ends[:, 1]]), np.concatenate([ends[:, 0], [0.0]])
-    steps = [np.array([[lo, h], [hi, h]]) for lo, hi, h in zip(*inner, z, strict=True) if lo != hi]
-    arcs = thick[thick[:, 1] > 0]
-    return np.array(sides + steps), np.column_stack([arcs[:, 0], arcs[:, 4] + arcs[:, 1], arcs[:, 1], arcs[:, 3]])
+    on_arc = ((middle[:, None] > bottom) & (middle[:, None] < start)).any(axis=1)
+    first = int(np.argmin(bottom))
+    if on_arc.any():
+        ends[on_arc] = [flat[first], base[first]]
+    sides = [np.array([[end[0], lo], [end[1], hi]]) for end, lo, hi, bent in zip(ends, low, high, on_arc, strict=True)
+             if not bent and end.any()]
+    below = np.concatenate([[0.0], ends[:, 1]])
+    above = np.concatenate([ends[:, 0], [0.0]])
+    steps = [np.array([[inner, h], [outer, h]]) for inner, outer, h in zip(below, above, z, strict=True)
+             if inner != outer]
+    arcs = np.column_stack([flat, bottom + corner, corner, sine])
+    return np.array(sides + steps), arcs[corner > 0]
+
+
+def _envelope_heights(bottom: Array, top: Array, start: Array, base: Array, slope: Array) -> Array:
+    """Heights at which the border of the union may go over from one piece to another, ascending."""
+    heights = [bottom, top, start]
+    for i in range(len(bottom)):
+        others = np.flatnonzero(slope[i] != slope)
+        apart = base[others] - slope[others] * start[others] - base[i] + slope[i] * start[i]
+        meet = apart / (slope[i] - slope[others])
+        heights.append(meet[(meet > start[i]) & (meet < top[i])])
+    z = np.unique(np.concatenate(heights))
+    fresh = np.diff(z) > 1e-9 * (z[-1] - z[0])
+    return np.asarray(z[np.concatenate([[True], fresh])])
 
 
 def _depth(pieces: Array, rho: Array, z: Array) -> Array:
@@ -221,8 +267,8 @@ def _depth(pieces: Array, rho: Array, z: Array) -> Array:
     lines, arcs = _envelope(pieces)
     p = np.stack([rho, z], axis=-1)
     along = lines[:, 1] - lines[:, 0]
-    share = np.clip(np.einsum("nkc,kc->nk", p[:, None] - lines[:, 0], along) / np.einsum("kc,kc->k", along, along),
-                    0.0, 1.0)
+    passed = np.einsum("nkc,kc->nk", p[:, None] - lines[:, 0], along)
+    share = np.clip(passed / np.einsum("kc,kc->k", along, along), 0.0, 1.0)
     foot = lines[:, 0] + share[..., None] * along - p[:, None]
     size = np.linalg.norm(foot, axis=-1)
     pick = np.argmin(size, axis=1)[:, None]
@@ -231,7 +277,8 @@ def _depth(pieces: Array, rho: Array, z: Array) -> Array:
     for a, centre, r, sb in arcs:
         d = p - [a, centre]
         length = np.linalg.norm(d, axis=1)
-        use = (d[:, 0] >= 0) & (np.sqrt(1 - sb**2) * d[:, 1] + sb * d[:, 0] <= 0) & (r - length < depth) & (length > 0)
+        on_arc = (d[:, 0] >= 0) & (np.sqrt(1 - sb**2) * d[:, 1] + sb * d[:, 0] <= 0)
+        use = on_arc & (r - length < depth) & (length > 0)
         depth = np.where(use, r - length, depth)
         towards = np.where(use[:, None], d, towards)
     size = np.linalg.norm(towards, axis=1, keepdims=True)
@@ -264,7 +311,8 @@ def signed_distance(pieces: Array, points: ArrayLike) -> Distance:
     **Properties**: 1. zero on the border; 2. 1-Lipschitz; 3. convex for the cutter alone; 4. turns with the tool.
     """
     rows = as_rows(points, 3, "points")
-    rho, z = np.hypot(rows[:, 0], rows[:, 1]), rows[:, 2].copy()
+    rho = np.hypot(rows[:, 0], rows[:, 1])
+    z = rows[:, 2].copy()
     found = nearest_piece(pieces, rho, z)
     thick = pieces[pieces[:, 5] > pieces[:, 4]]
     within = nearest_piece(thick, rho, z)[:, 0] <= 0
@@ -272,5 +320,6 @@ def signed_distance(pieces: Array, points: ArrayLike) -> Distance:
         deep = _depth(pieces, rho[within], z[within])
         found[within, 0] = -deep[:, 0]
         found[within, 1:] = np.where(deep[:, :1] > 0, deep[:, 1:], found[within, 1:])
-    radial = np.where(rho[:, None] > 0, rows[:, :2] / np.where(rho > 0, rho, 1.0)[:, None], [1.0, 0.0])
+    away = rows[:, :2] / np.where(rho > 0, rho, 1.0)[:, None]
+    radial = np.where(rho[:, None] > 0, away, [1.0, 0.0])
     return Distance(found[:, 0], np.column_stack([radial * found[:, 1:2], found[:, 2]]))
