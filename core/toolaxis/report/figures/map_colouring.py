@@ -1,6 +1,7 @@
 """Colours of sub-surfaces: few, pale, and different on both sides of a border."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,26 +34,42 @@ def colour_map(operations: Sequence[Operation]) -> list[int]:
     operations : sequence of Operation
     """
     borders = [_border(op) for op in operations]
-    low, high = (np.array([end(points, axis=0) for _, points in borders]).reshape(-1, 3) for end in (np.min, np.max))
+    low = np.array([border.points.min(axis=0) for border in borders]).reshape(-1, 3)
+    high = np.array([border.points.max(axis=0) for border in borders]).reshape(-1, 3)
     chosen: list[int] = []
-    for k, (tree, points) in enumerate(borders):
+    for k, border in enumerate(borders):
         near = 0.01 * operations[k].face.diagonal
-        around = np.flatnonzero(((low[:k] <= high[k] + near) & (high[:k] >= low[k] - near)).all(axis=1))
-        beside = {chosen[other] for other in around
-                  if (borders[other][0].query(points, distance_upper_bound=near)[0] <= near).any()
-                  or (tree.query(borders[other][1], distance_upper_bound=near)[0] <= near).any()}
+        boxes_touch = ((low[:k] <= high[k] + near) & (high[:k] >= low[k] - near)).all(axis=1)
+        beside = {chosen[other] for other in np.flatnonzero(boxes_touch) if border.touches(borders[other], near)}
         order = [(k + step) % len(COLOURS) for step in range(len(COLOURS))]
         chosen.append(next((colour for colour in order if colour not in beside), order[0]))
     return chosen
 
 
-def _border(op: Operation) -> tuple[cKDTree, Array]:
-    """Points along the outline, about as many on each edge, and a tree of them."""
+class _BorderPoints(NamedTuple):
+    """Points along an outline, (n, 3) mm, and a tree of them."""
+
+    tree: cKDTree
+    points: Array
+
+    def touches(self, other: "_BorderPoints", near: float) -> bool:
+        """Whether some point of one lies near a point of the other."""
+        for one, points in ((other.tree, self.points), (self.tree, other.points)):
+            distances, _ = one.query(points, distance_upper_bound=near)
+            if (distances <= near).any():
+                return True
+        return False
+
+
+def _border(op: Operation) -> _BorderPoints:
+    """Points along the outline, as many on each edge."""
     share = np.linspace(0.0, 1.0, 24, endpoint=False)[:, None]
-    points = [op.face.evaluate(start + share * (end - start)).point
-              for loop in op.face.outline for start, end in zip(loop, np.roll(loop, -1, axis=0), strict=True)]
+    points = []
+    for loop in op.face.outline:
+        for start, end in zip(loop, np.roll(loop, -1, axis=0), strict=True):
+            points.append(op.face.evaluate(start + share * (end - start)).point)
     rows = np.concatenate(points)
-    return cKDTree(rows), rows
+    return _BorderPoints(cKDTree(rows), rows)
 
 
 def colours_of(plan: Plan) -> dict[int, tuple[float, float, float]]:
@@ -65,5 +82,10 @@ def colours_of(plan: Plan) -> dict[int, tuple[float, float, float]]:
     """
     copies = {} if plan.blades is None else plan.blades.copies
     own = [op for op in plan.operations if op.number not in copies]
-    found = {op.number: COLOURS[k] for op, k in zip(own, colour_map(own) if own else (), strict=True)}
-    return {op.number: found[copies.get(op.number, op.number)] if op.done else _NO_AXIS for op in plan.operations}
+    numbers = colour_map(own) if own else []
+    found = {op.number: COLOURS[k] for op, k in zip(own, numbers, strict=True)}
+    colours = {}
+    for op in plan.operations:
+        original = copies.get(op.number, op.number)
+        colours[op.number] = found[original] if op.done else _NO_AXIS
+    return colours

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import inside, slabs, stations, walk
 from toolaxis.numeric.simplify_polyline import simplify_loop
 from toolaxis.shape.face import Face
@@ -53,28 +54,31 @@ def triangles(face: Face, bound: float) -> Triangles:
     """
     u0, u1, v0, v1 = face.bounds
     counts, scale = _counts(face, bound)
-    u, v = np.linspace(u0, u1, counts[0] + 1), np.linspace(v0, v1, counts[1] + 1)
+    u = np.linspace(u0, u1, counts[0] + 1)
+    v = np.linspace(v0, v1, counts[1] + 1)
     if face.trims:
         uv, corners = _triangulate_loops(face, (u, v), scale, bound)
     else:
         uv, corners = _whole(u, v)
     points = face.evaluate(uv).point
-    sizes = np.linalg.norm(np.cross(points[corners[:, 1]] - points[corners[:, 0]],
-                                    points[corners[:, 2]] - points[corners[:, 0]]), axis=1)
-    corners = corners[sizes > 1e-9 * max(float(sizes.max(initial=0.0)), 1e-300)]
+    a, b, c = points[corners.T]
+    sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    largest = max(float(sizes.max(initial=0.0)), 1e-300)
+    corners = corners[sizes > 1e-9 * largest]
     return Triangles(points, corners[:, ::-1] if face.flip else corners, _off(face, uv, points, corners))
 
 
 def _counts(face: Face, bound: float) -> tuple[tuple[int, int], Array]:
     """Segments along u and v, and lengths of the unit of u and of v, mm."""
     u0, u1, v0, v1 = face.bounds
-    u, v = np.linspace(u0, u1, _LOOKED), np.linspace(v0, v1, _LOOKED)
-    d = face.evaluate(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+    u = np.linspace(u0, u1, _LOOKED)
+    v = np.linspace(v0, v1, _LOOKED)
+    d = face.evaluate(grid_rows(u, v))
     spans = np.array([u1 - u0, v1 - v0])
     bends = np.array([np.linalg.norm(row, axis=1).max() for row in (d.suu, d.svv)]) * spans**2
     twist = float(np.linalg.norm(d.suv, axis=1).max()) * float(np.prod(spans))
-    counts = np.sqrt(bends / (8 * 0.4 * bound))
-    both = np.maximum(counts, 1.0)
+    # A chord is off by an eighth of the bend over it, a cell's middle by a quarter of the twist: shares of the bound.
+    both = np.maximum(np.sqrt(bends / (8 * 0.4 * bound)), 1.0)
     both *= max(1.0, np.sqrt(twist / (4 * 0.4 * bound * float(np.prod(both)))))
     whole = np.clip(np.ceil(both), 2, _MOST).astype(int)
     lengths = np.array([float(np.linalg.norm(row, axis=1).mean()) for row in (d.su, d.sv)])
@@ -83,10 +87,13 @@ def _counts(face: Face, bound: float) -> tuple[tuple[int, int], Array]:
 
 def _whole(u: Array, v: Array) -> tuple[Array, Index]:
     """Points and triangles of a whole grid."""
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     i, j = (index.ravel() for index in np.indices((len(u) - 1, len(v) - 1)))
-    a, b, c, d = (k * len(v) + l for k, l in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)))
-    return uv, np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    a = i * len(v) + j
+    b = a + len(v)
+    c = b + 1
+    d = a + 1
+    halves = [np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]
+    return grid_rows(u, v), np.concatenate(halves)
 
 
 def outline_loops(face: Face, bound: float) -> list[Array]:
@@ -104,7 +111,8 @@ def outline_loops(face: Face, bound: float) -> list[Array]:
     for loop in face.outline:
         dense = walk(loop, stations(loop, step))
         # In space and in the parameters too: the two sides of a seam are one line in space.
-        loops.append(dense[simplify_loop(np.hstack([face.evaluate(dense).point, dense * scale]), bound)])
+        both = np.hstack([face.evaluate(dense).point, dense * scale])
+        loops.append(dense[simplify_loop(both, bound)])
     return loops
 
 
@@ -113,8 +121,8 @@ def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, boun
     from scipy.spatial import Delaunay, QhullError
 
     loops = [loop * scale for loop in outline_loops(face, 0.5 * bound)]
-    inner = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 2) * scale
-    step = np.array([grid[0][1] - grid[0][0], grid[1][1] - grid[1][0]]) * scale
+    inner = grid_rows(*grid) * scale
+    step = np.array([line[1] - line[0] for line in grid]) * scale
     inner = inner[inside(slabs(tuple(loops)), inner)]
     origin = np.concatenate(loops).min(axis=0)
     for attempt in range(_ROUNDS + 1):
@@ -127,16 +135,18 @@ def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, boun
             return border / scale, np.empty((0, 3), dtype=np.int64)
         if attempt == _ROUNDS:
             break
-        halved = [_halve_edges(loop, corners, first) for loop, first in
-                  zip(loops, np.cumsum([0, *map(len, loops)])[:-1], strict=True)]
+        firsts = np.cumsum([0, *map(len, loops)])[:-1]
+        halved = [_halve_edges(loop, corners, first) for loop, first in zip(loops, firsts, strict=True)]
         if all(len(new) == len(old) for new, old in zip(halved, loops, strict=True)):
             break
         loops = halved
     kept = inside(slabs(tuple(loops)), points[corners].mean(axis=1))
     corners = corners[kept]
-    a, b, c = (points[corners[:, k]] for k in range(3))
-    turned = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] < 0
-    corners[turned] = corners[turned][:, ::-1]
+    a, b, c = points[corners.T]
+    bx, by = (b - a).T
+    cx, cy = (c - a).T
+    clockwise = bx * cy - by * cx < 0
+    corners[clockwise] = corners[clockwise][:, ::-1]
     return points / scale, corners
 
 
@@ -149,10 +159,17 @@ def _away(points: Array, loops: list[Array], least: float) -> NDArray[np.bool_]:
 
 def _halve_edges(loop: Array, corners: Index, first: int) -> Array:
     """A loop with a vertex in the middle of each edge that is no side of a triangle."""
-    count, most = len(loop), int(corners.max()) + 1
-    sides = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
-    own = np.sort(np.stack([np.arange(count), np.roll(np.arange(count), -1)], axis=1) + first, axis=1)
-    missing = ~np.isin(own[:, 0] * most + own[:, 1], sides[:, 0] * most + sides[:, 1])
+    most = int(corners.max()) + 1
+
+    def number(ends: Index) -> Index:
+        """One number for each pair of points, in whatever order."""
+        lower, upper = np.sort(ends, axis=1).T
+        return np.asarray(lower * most + upper)
+
+    vertex = first + np.arange(len(loop))
+    edges = np.stack([vertex, np.roll(vertex, -1)], axis=1)
+    sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    missing = ~np.isin(number(edges), number(sides))
     middle = 0.5 * (loop + np.roll(loop, -1, axis=0))
     return np.insert(loop, np.flatnonzero(missing) + 1, middle[missing], axis=0)
 
@@ -165,5 +182,6 @@ def _off(face: Face, uv: Array, points: Array, corners: Index) -> float:
     for rows in (corners, corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]):
         at = uv[rows].mean(axis=1)
         apart = face.evaluate(at).point - points[rows].mean(axis=1)
-        worst = max(worst, float(np.abs((apart * face.normal(at)).sum(axis=1)).max()))
+        off = (apart * face.normal(at)).sum(axis=1)
+        worst = max(worst, float(np.abs(off).max()))
     return worst
