@@ -68,8 +68,8 @@ class Blade:
     @property
     def faces(self) -> tuple[int, ...]:
         """All its faces."""
-        return tuple(sorted(self.suction + self.pressure + self.leading + self.trailing + self.fillets + self.tip
-                            + self.others))
+        named = self.suction + self.pressure + self.leading + self.trailing + self.fillets + self.tip
+        return tuple(sorted(named + self.others))
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +136,9 @@ def blades_of(part: Part) -> Bladed:
     if strangers:
         raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
                                   f"{strangers[0]} the first): blades are missing or moved; choose faces by hand")
-    turned = [face.number for face in part.faces if _of_revolution(samples, face.number, point, axis)]
-    groups = _groups(part, [face.number for face in part.faces if face.number not in turned], samples)
+    numbers = [face.number for face in part.faces]
+    turned = [n for n in numbers if _of_revolution(samples, n, point, axis)]
+    groups = _groups(part, [n for n in numbers if n not in turned], samples)
     groups = [group for group in groups if _has_like(samples, group[0], sculptured)]
     if not groups:
         raise NoPattern(f"nothing but faces of revolution stands around an axis of {count} equal parts: no blades")
@@ -146,9 +147,7 @@ def blades_of(part: Part) -> Bladed:
                                   "blade each is needed; blades that touch each other cannot be told apart")
     ordered = _in_turn([(group, samples.centre[group[0]] - point) for group in groups], axis)
     own = {n for group in groups for n in group}
-    apart = [body.faces for body in part.bodies if body.closed and not own.intersection(body.faces)]
-    size = [sum(samples.area[n] for n in faces) for faces in apart]
-    disc = {n for faces, area in zip(apart, size, strict=True) if area >= SMALL * max(size) for n in faces}
+    disc = _disc(part, samples, own)
     floor = sorted(disc.intersection(turned)) or turned
     found = tuple(_blade(part, group, (turned, floor), samples, (point, axis)) for group in ordered)
     tips = {n for blade in found for n in blade.tip}
@@ -156,15 +155,25 @@ def blades_of(part: Part) -> Bladed:
     return Bladed(point, axis, found, tuple(n for n in floor if n in beside and n not in tips))
 
 
+def _disc(part: Part, samples: _Samples, blades: set[int]) -> set[int]:
+    """Faces of the bodies that have no blade, small ones left out."""
+    bodies = [body.faces for body in part.bodies if body.closed and not blades.intersection(body.faces)]
+    areas = [sum(samples.area[n] for n in faces) for faces in bodies]
+    return {n for faces, area in zip(bodies, areas, strict=True) if area >= SMALL * max(areas) for n in faces}
+
+
 def _sample_faces(part: Part) -> _Samples:
-    points, normals, bulge, centre, area = {}, {}, {}, {}, {}
+    found = _Samples({}, {}, {}, {}, {})
     for face in part.faces:
+        n = face.number
         uv = _inside(face)
-        points[face.number], normals[face.number] = face.evaluate(uv).point, face.normal(uv)
-        k = face.curvature(uv)
-        bulge[face.number] = float(-np.median(k.k1 + k.k2))
-        centre[face.number], area[face.number] = points[face.number].mean(axis=0), face.area
-    return _Samples(points, normals, bulge, centre, area)
+        curvature = face.curvature(uv)
+        found.points[n] = face.evaluate(uv).point
+        found.normals[n] = face.normal(uv)
+        found.bulge[n] = float(-np.median(curvature.k1 + curvature.k2))
+        found.centre[n] = found.points[n].mean(axis=0)
+        found.area[n] = face.area
+    return found
 
 
 def _inside(face: Face) -> Array:
@@ -185,11 +194,15 @@ def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Arra
             pairs, away = _counterparts(part, samples, looked, (point, axis), 2 * np.pi / count)
             fit = sum(samples.area[n] * (1 - away[n] / 2) for n in pairs) / sum(samples.area[n] for n in looked)
             worse = (exact, count) < known
-            if fit > best + (_SLACK if worse else 1e-3) or (found is not None and not worse and count > known[1]
-                                                            and fit > best - _SLACK):
-                best, known = fit, (exact, count)
+            clearly_better = fit > best + (_SLACK if worse else 1e-3)
+            # As good with more parts: a pattern of twelve is one of six too.
+            finer = found is not None and not worse and count > known[1] and fit > best - _SLACK
+            if clearly_better or finer:
+                best = fit
+                known = (exact, count)
                 line = (point, axis) if exact else _refine_axis(samples, pairs, point, axis)
-                found = (*line, count, [n for n in looked if n not in pairs and _has_like(samples, n, looked)])
+                strangers = [n for n in looked if n not in pairs and _has_like(samples, n, looked)]
+                found = (*line, count, strangers)
     if found is None:
         raise NoPattern("no axis has a pattern of like faces around it: blades cannot be found on this part")
     if not known[0]:  # an axis of inertia, refined by the blades: faces that are of revolution about it tell it exactly
@@ -213,24 +226,33 @@ def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bo
     share = [np.full(len(samples.points[n]), samples.area[n] / len(samples.points[n])) for n in sculptured]
     weight = np.concatenate(share)
     values, vectors = np.linalg.eigh(np.cov(points.T, aweights=weight))
-    axis = vectors[:, 0 if values[1] - values[0] > values[2] - values[1] else 2]
+    # Of a body of revolution two moments are the same: the axis is the direction of the third.
+    alone = 0 if values[1] - values[0] > values[2] - values[1] else 2
+    axis = vectors[:, alone]
     return [*result, (False, np.average(points, axis=0, weights=weight), axis)]
 
 
 def _line_met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array]:
     """The line d, m = a x d that lines (p, n) meet: n . (d x p) + n . m = 0, by least squares, strangers left out."""
-    point, d = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    point = np.zeros(3)
+    d = np.array([0.0, 0.0, 1.0])
     for _ in range(4):
-        p, n = (np.concatenate([table[k] for k in numbers]) for table in (samples.points, samples.normals))
+        p = np.concatenate([samples.points[k] for k in numbers])
+        n = np.concatenate([samples.normals[k] for k in numbers])
         area = np.concatenate([np.full(len(samples.points[k]), samples.area[k]) for k in numbers])
-        middle, size = p.mean(axis=0), float(np.ptp(p, axis=0).max())
-        rows = np.concatenate([np.cross((p - middle) / size, n), n], axis=1) * np.sqrt(area)[:, None]
+        middle = p.mean(axis=0)
+        size = float(np.ptp(p, axis=0).max())
+        moments = np.cross((p - middle) / size, n)
+        rows = np.concatenate([moments, n], axis=1) * np.sqrt(area)[:, None]
         _, values, lines = np.linalg.svd(rows, full_matrices=False)
         line = lines[-1]
         if values[-2] <= _ROUND * values[0]:  # cylinders alone: the line at infinity across them is met too
             line = np.linalg.svd(lines[-2:, :3].T)[2][0] @ lines[-2:]
-        length = max(float(np.linalg.norm(line[:3])), 1e-9)
-        d, point = line[:3] / length, middle + size * np.cross(line[:3], line[3:]) / length**2
+        way = line[:3]
+        moment = line[3:]
+        length = max(float(np.linalg.norm(way)), 1e-9)
+        d = way / length
+        point = middle + size * np.cross(way, moment) / length**2
         kept = [k for k in numbers if _of_revolution(samples, k, point, d)]
         if len(kept) in (0, len(numbers)):
             break
@@ -256,14 +278,18 @@ def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[
     best = away.argmin(axis=1)
     share = away[np.arange(len(looked)), best] / (IN_PLACE * part.diagonal)
     near = np.flatnonzero(share < 1)
-    return {looked[i]: looked[int(best[i])] for i in near}, {looked[i]: float(share[i]) for i in near}
+    pairs = {looked[i]: looked[int(best[i])] for i in near}
+    return pairs, {looked[i]: float(share[i]) for i in near}
 
 
 def _refine_axis(samples: _Samples, pairs: dict[int, int], point: Array, axis: Array) -> tuple[Array, Array]:
     """The axis of the turn that brings the centres of faces closest to their counterparts'."""
-    a, b = (np.array([samples.centre[n] for n in numbers]) for numbers in (pairs.keys(), pairs.values()))
+    a = np.array([samples.centre[n] for n in pairs])
+    b = np.array([samples.centre[n] for n in pairs.values()])
     weight = np.array([samples.area[n] for n in pairs])
-    ma, mb = np.average(a, axis=0, weights=weight), np.average(b, axis=0, weights=weight)
+    ma = np.average(a, axis=0, weights=weight)
+    mb = np.average(b, axis=0, weights=weight)
+    # The rotation that fits best, by the singular values of the covariance; never a reflection.
     u, _, vt = np.linalg.svd((a - ma).T @ ((b - mb) * weight[:, None]))
     turn = (vt.T * [1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
     way = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
@@ -275,14 +301,17 @@ def _refine_axis(samples: _Samples, pairs: dict[int, int], point: Array, axis: A
 
 
 def _of_revolution(samples: _Samples, number: int, point: Array, axis: Array, within: float = MEETS) -> bool:
+    """Whether no normal of a face has a part around the axis."""
     around = np.cross(axis, samples.points[number] - point)
-    reach = np.linalg.norm(around, axis=1)
-    return bool((np.abs((samples.normals[number] * around).sum(axis=1)) <= within * np.maximum(reach, 1e-9)).all())
+    reach = np.maximum(np.linalg.norm(around, axis=1), 1e-9)
+    part_around = np.abs((samples.normals[number] * around).sum(axis=1))
+    return bool((part_around <= within * reach).all())
 
 
 def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]]:
     """Faces that hang together, each group with its largest first; small groups are left out."""
-    left, groups = set(numbers), []
+    left = set(numbers)
+    groups = []
     while left:
         group = [min(left)]
         for n in group:
@@ -295,27 +324,31 @@ def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]
 
 def _in_turn(groups: list[tuple[list[int], Array]], axis: Array) -> list[list[int]]:
     """Groups of faces, each with a point of it from the axis, in the order of a right-handed turn, the first first."""
-    start = groups[0][1]
-    angle = [float(np.arctan2(axis @ np.cross(start, at), start @ at - (start @ axis) * (at @ axis))) % (2 * np.pi)
-             for _, at in groups]
-    angle[0] = 0.0
-    return [groups[k][0] for k in np.argsort(angle)]
+    _, start = groups[0]
+    angles = []
+    for _, at in groups:
+        across = axis @ np.cross(start, at)
+        along = start @ at - (start @ axis) * (at @ axis)
+        angles.append(float(np.arctan2(across, along)) % (2 * np.pi))
+    angles[0] = 0.0
+    return [groups[k][0] for k in np.argsort(angles)]
 
 
 def _blade(part: Part, group: list[int], turned: tuple[list[int], list[int]], samples: _Samples,
            line: tuple[Array, Array]) -> Blade:
     """A blade from its faces; `turned` are all faces of revolution, and those that may be the hub's."""
     own = set(group)
-    fillets = [n for n in group if any(m in turned[1] for m in part.neighbours(n, "tangent"))]
-    tip = [n for n in turned[0] if part.neighbours(n) and own.issuperset(part.neighbours(n))]
+    every, floor = turned
+    fillets = [n for n in group if any(m in floor for m in part.neighbours(n, "tangent"))]
+    tip = [n for n in every if part.neighbours(n) and own.issuperset(part.neighbours(n))]
     body = [n for n in group if n not in fillets]
     if len(body) < 2:
         raise NoPattern(f"face {group[0]} stands around the axis with its like, but has no second side: no blades")
     suction, pressure = sorted(body[:2], key=lambda n: -samples.bulge[n])
     leading, trailing = _edges(part, body[2:], (suction, pressure), samples, line)
     named = {suction, pressure, *leading, *trailing}
-    return Blade((suction,), (pressure,), leading, trailing, tuple(sorted(fillets)), tuple(sorted(tip)),
-                 tuple(n for n in sorted(body) if n not in named))
+    others = tuple(n for n in sorted(body) if n not in named)
+    return Blade((suction,), (pressure,), leading, trailing, tuple(sorted(fillets)), tuple(sorted(tip)), others)
 
 
 def _edges(part: Part, rest: list[int], sides: tuple[int, int], samples: _Samples,
@@ -326,17 +359,21 @@ def _edges(part: Part, rest: list[int], sides: tuple[int, int], samples: _Sample
         return (), ()
     centre = np.array([samples.centre[n] for n in between])
     away = np.linalg.norm(centre[:, None] - centre, axis=2)
-    i, j = sorted(np.unravel_index(int(away.argmax()), away.shape), key=lambda k: between[k])
-    first, second = (_foremost(samples, sides, samples.centre[between[k]], line) for k in (i, j))
-    radial = abs(first[0] - second[0]) > OUTWARDS * max(first[0], second[0])
-    swap = first[0] > second[0] if radial else first[1] < second[1]
-    ends = ((between[i],), (between[j],))
-    return ends[::-1] if swap else ends
+    first, second = sorted(between[k] for k in np.unravel_index(int(away.argmax()), away.shape))
+    first_reach, first_flat = _foremost(samples, sides, samples.centre[first], line)
+    second_reach, second_flat = _foremost(samples, sides, samples.centre[second], line)
+    if abs(first_reach - second_reach) > OUTWARDS * max(first_reach, second_reach):  # the flow turns outwards
+        second_leads = first_reach > second_reach
+    else:
+        second_leads = first_flat < second_flat
+    return ((second,), (first,)) if second_leads else ((first,), (second,))
 
 
 def _foremost(samples: _Samples, sides: tuple[int, int], end: Array, line: tuple[Array, Array]) -> tuple[float, float]:
     """Distance of an edge from the axis, and how flat the sides stand to the axis there."""
     point, axis = line
-    points, normals = (np.concatenate([table[n] for n in sides]) for table in (samples.points, samples.normals))
+    points = np.concatenate([samples.points[n] for n in sides])
+    normals = np.concatenate([samples.normals[n] for n in sides])
     near = np.argsort(np.linalg.norm(points - end, axis=1))[:max(len(points) // 8, 1)]
-    return float(np.linalg.norm(np.cross(axis, end - point))), float(np.abs(normals[near] @ axis).mean())
+    reach = np.linalg.norm(np.cross(axis, end - point))
+    return float(reach), float(np.abs(normals[near] @ axis).mean())

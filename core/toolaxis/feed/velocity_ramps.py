@@ -73,7 +73,8 @@ def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds:
     for begin in range(0, len(matrices), _BATCH):
         some = slice(begin, begin + _BATCH)
         for number in _numbers(bend.derivatives[0].shape[-2]):
-            best[some] = np.minimum(best[some], _times(_ramps_in_windows(matrices[some], bend, number, feed, bounds)))
+            windows = _ramps_in_windows(matrices[some], bend, number, feed, bounds)
+            best[some] = np.minimum(best[some], _times(windows))
     return best
 
 
@@ -116,19 +117,24 @@ def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
     along : (n,) array_like
         Parameters, ascending, mm.
     """
-    rows, places = np.asarray(points, dtype=float), np.asarray(along, dtype=float)
-    count, n, _ = rows.shape
+    rows = np.asarray(points, dtype=float)
+    places = np.asarray(along, dtype=float)
+    ways, n, _ = rows.shape
+    begin = places[0]
+    end = places[-1]
     inner = places[_APART:-_APART:_APART]
-    knots = np.concatenate([np.full(DEGREE + 1, places[0]), inner, np.full(DEGREE + 1, places[-1])])
+    knots = np.concatenate([np.full(DEGREE + 1, begin), inner, np.full(DEGREE + 1, end)])
     curve = make_lsq_spline(places, rows.swapaxes(0, 1).reshape(n, -1), knots, DEGREE)
-    count_of = int(np.clip(n, 16 * _PLACES, _MOST))
-    s = places[0] + (np.arange(count_of) + 0.5) * ((places[-1] - places[0]) / count_of)
-    first, second = (np.asarray(curve(s, order)).reshape(len(s), count, 3).swapaxes(0, 1) for order in (1, 2))
+    count = int(np.clip(n, 16 * _PLACES, _MOST))
+    s = begin + (np.arange(count) + 0.5) * ((end - begin) / count)
+    first, second = (np.asarray(curve(s, order)).reshape(count, ways, 3).swapaxes(0, 1) for order in (1, 2))
     stretch = np.linalg.norm(first, axis=2)
     pace = np.maximum(stretch, _NOTHING)[..., None]
     way = first / pace
-    bent = (second - (way * second).sum(axis=2, keepdims=True) * way) / pace**2
-    return CurveShape(float(places[-1] - places[0]), (way, bent, np.gradient(bent, s, axis=1) / pace), stretch)
+    along_way = (way * second).sum(axis=2, keepdims=True)
+    bent = (second - along_way * way) / pace**2
+    change = np.gradient(bent, s, axis=1) / pace
+    return CurveShape(float(end - begin), (way, bent, change), stretch)
 
 
 def greatest_speeds(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds: AxisBounds) -> Array:
@@ -148,9 +154,12 @@ def _tops(bend: tuple[Array, Array, Array], feed: float, bounds: AxisBounds, sha
     """Greatest speeds at which a curve, its derivatives above 0, takes no more than shares of accelerations and jerks.
     """
     first, second, third = bend
-    top = np.minimum(feed, (bounds.velocity / first).min(axis=2))
-    top = np.minimum(top, np.sqrt((shares[0] * bounds.acceleration / second).min(axis=2)))
-    return np.asarray(np.minimum(top, np.cbrt((shares[1] * bounds.jerk / third).min(axis=2))))
+    of_acceleration, of_jerk = shares
+    by_velocity = (bounds.velocity / first).min(axis=2)
+    by_acceleration = np.sqrt((of_acceleration * bounds.acceleration / second).min(axis=2))
+    by_jerk = np.cbrt((of_jerk * bounds.jerk / third).min(axis=2))
+    top = np.minimum(np.minimum(feed, by_velocity), by_acceleration)
+    return np.asarray(np.minimum(top, by_jerk))
 
 
 class _Windows(NamedTuple):
@@ -170,17 +179,20 @@ def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: floa
     """Ramps between a number of windows of one length."""
     count = bend.derivatives[0].shape[-2]
     starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
-    first, second, third = (np.maximum.reduceat(np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING, starts, axis=1)
-                            for rows in bend.derivatives)
+    joints = [np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING for rows in bend.derivatives]
+    first, second, third = (np.maximum.reduceat(each, starts, axis=1) for each in joints)
     top = _tops((first, second, third), feed, bounds, (_BEND, _CURVE))
     speed = top[..., None]
-    a = np.minimum((bounds.acceleration - second * speed**2) / first, _CROSS * bounds.jerk / (3 * second * speed))
-    a = a.min(axis=2)
+    # What the bend leaves of the limits at the greatest speed is for the ramps.
+    left = (bounds.acceleration - second * speed**2) / first
+    by_jerk = _CROSS * bounds.jerk / (3 * second * speed)
+    a = np.minimum(left, by_jerk).min(axis=2)
     j = ((bounds.jerk - third * speed**3 - 3 * second * speed * a[..., None]) / first).min(axis=2)
     caps = np.zeros((len(top), number + 1))
     caps[:, 1:-1] = np.minimum(top[:, :-1], top[:, 1:])
     run = np.full(a.shape, bend.length / number)
-    chain = look_ahead(run.reshape(-1), a.reshape(-1), j.reshape(-1), np.append(caps[:, :-1].reshape(-1), 0.0))
+    starting = np.append(caps[:, :-1].reshape(-1), 0.0)
+    chain = look_ahead(run.reshape(-1), a.reshape(-1), j.reshape(-1), starting)
     caps[:, :-1] = chain[:-1].reshape(len(top), number)  # each set-up begins and ends at rest: one chain serves all
     return _Windows(run, caps, (top, a, j))
 

@@ -33,7 +33,8 @@ def reach_excess(machine: Machine, axes: ArrayLike, table_from_part: ArrayLike |
     """
     rows = unit(as_rows(axes, 3, "axis")) @ placement(table_from_part)[:3, :3].T
     away = np.min([_to_arc(rows, *arc) for arc in _border(machine)], axis=0)
-    return np.where(rotary_angles(machine, axes, table_from_part=table_from_part).within.any(axis=1), 0.0, away)
+    reached = rotary_angles(machine, axes, table_from_part=table_from_part).within.any(axis=1)
+    return np.where(reached, 0.0, away)
 
 
 def travel_excess(machine: Machine, points: ArrayLike, axis: ArrayLike, tool_length: float = 0.0,
@@ -74,21 +75,27 @@ def travel_excess(machine: Machine, points: ArrayLike, axis: ArrayLike, tool_len
 
 def _border(machine: Machine) -> list[tuple[Array, Array, float]]:
     """Arcs (axis, start, turn) that bound the reached axes: the start turned about the axis by 0 to turn."""
-    rotary, spindle = machine.rotary, np.asarray(machine.spindle)
+    rotary = machine.rotary
+    spindle = np.asarray(machine.spindle)
     if not rotary:
         return [(spindle, spindle, 0.0)]
     ranges = [(axis.low, axis.high) if axis.high - axis.low < 2 * pi else (-pi, pi) for axis in rotary]
+    a = rotary[0].direction
+    a_low, a_high = ranges[0]
     if len(rotary) == 1:
-        return [(rotary[0].direction, _one(spindle, rotary[0].direction, ranges[0][0]), ranges[0][1] - ranges[0][0])]
-    a, b = rotary[0].direction, rotary[1].direction
+        return [(a, _one(spindle, a, a_low), a_high - a_low)]
+    b = rotary[1].direction
+    b_low, b_high = ranges[1]
     arcs = []
-    for turn in ranges[0]:
-        begin = _one(_one(spindle, b, ranges[1][0]), a, turn)
-        arcs.append((_one(b, a, turn), begin, ranges[1][1] - ranges[1][0]))
+    for turn in (a_low, a_high):
+        begin = _one(_one(spindle, b, b_low), a, turn)
+        arcs.append((_one(b, a, turn), begin, b_high - b_low))
+    # Where the spindle comes into the plane of both axes their two solutions meet.
     meet = float(turn_between(spindle[None], a[None], b)[0])
-    meets = [meet + k * pi for k in range(-4, 5) if ranges[1][0] <= meet + k * pi <= ranges[1][1]]
-    for turn in (*ranges[1], *meets):
-        arcs.append((a, _one(_one(spindle, b, turn), a, ranges[0][0]), ranges[0][1] - ranges[0][0]))
+    meets = [meet + k * pi for k in range(-4, 5) if b_low <= meet + k * pi <= b_high]
+    for turn in (b_low, b_high, *meets):
+        begin = _one(_one(spindle, b, turn), a, a_low)
+        arcs.append((a, begin, a_high - a_low))
     return arcs
 
 

@@ -39,8 +39,11 @@ def contours(values: Array, lines: tuple[Array, Array],
     f = np.full((len(x), len(y)), -1.0)
     f[1:-1, 1:-1] = values
     above = f > 0
-    cells = np.argwhere((above[:-1, :-1] != above[1:, :-1]) | (above[1:, :-1] != above[1:, 1:])
-                        | (above[1:, 1:] != above[:-1, 1:]))
+    left_low = above[:-1, :-1]
+    right_low = above[1:, :-1]
+    right_high = above[1:, 1:]
+    left_high = above[:-1, 1:]
+    cells = np.argwhere((left_low != right_low) | (right_low != right_high) | (right_high != left_high))
     at = _vertices(f, (x, y), function, halvings)
     joined: dict[tuple[int, int, int], list[tuple[int, int, int]]] = {}
     for i, j in cells.tolist():
@@ -53,7 +56,8 @@ def contours(values: Array, lines: tuple[Array, Array],
 def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
               halvings: int) -> dict[tuple[int, int, int], Array]:
     """Where edges of the grid cross zero, by axis along which the edge runs and its lower node."""
-    keys, ends = [], []
+    keys = []
+    ends = []  # of each edge, the node above zero and the other one
     for axis in (0, 1):
         g = np.moveaxis(f, axis, 0)
         along, across = np.nonzero((g[1:] > 0) != (g[:-1] > 0))
@@ -63,11 +67,13 @@ def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], 
             ends.append((low, high) if f[low] > 0 else (high, low))
     if not keys:
         return {}
-    node = np.array(ends)
-    good, bad = (np.column_stack([lines[0][node[:, k, 0]], lines[1][node[:, k, 1]]]) for k in (0, 1))
-    value = f[node[:, 0, 0], node[:, 0, 1]], f[node[:, 1, 0], node[:, 1, 1]]
-    share = (value[0] / (value[0] - value[1]))[:, None]
-    outer = ((node[:, 1] == 0) | (node[:, 1] == np.array(f.shape) - 1)).any(axis=1)
+    above, below = np.array(ends).swapaxes(0, 1)
+    good, bad = (np.column_stack([lines[0][node[:, 0]], lines[1][node[:, 1]]]) for node in (above, below))
+    high_value = f[above[:, 0], above[:, 1]]
+    low_value = f[below[:, 0], below[:, 1]]
+    share = (high_value / (high_value - low_value))[:, None]
+    # Beyond the grid's border there is nothing: lines run along it.
+    outer = ((below == 0) | (below == np.array(f.shape) - 1)).any(axis=1)
     points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
     if function is not None and not outer.all():
         points[~outer] = _bisect(function, good[~outer], bad[~outer], halvings)
@@ -78,7 +84,8 @@ def _bisect(function: Callable[[Array], Array], good: Array, bad: Array, halving
     for _ in range(halvings):
         middle = (good + bad) / 2
         holds = (function(middle) > 0)[:, None]
-        good, bad = np.where(holds, middle, good), np.where(holds, bad, middle)
+        good = np.where(holds, middle, good)
+        bad = np.where(holds, bad, middle)
     return (good + bad) / 2
 
 
@@ -89,18 +96,22 @@ def _segments(f: Array, above: NDArray[np.bool_], i: int,
     corner = [bool(above[i + a, j + b]) for a, b in _CORNERS]
     crossed = [k for k in range(4) if corner[k] != corner[(k + 1) % 4]]
     if len(crossed) == 2:
-        return [(edges[crossed[0]], edges[crossed[1]])]
+        first, second = crossed
+        return [(edges[first], edges[second])]
     middle = float(f[i:i + 2, j:j + 2].sum()) > 0
-    first = (0, 1) if middle != corner[1] else (3, 0)
-    second = (2, 3) if first == (0, 1) else (1, 2)
-    return [(edges[first[0]], edges[first[1]]), (edges[second[0]], edges[second[1]])]
+    if middle != corner[1]:
+        return [(edges[0], edges[1]), (edges[2], edges[3])]
+    return [(edges[3], edges[0]), (edges[1], edges[2])]
 
 
 def _trace_lines(joined: dict[tuple[int, int, int], list[tuple[int, int, int]]],
                  at: dict[tuple[int, int, int], Array]) -> tuple[Array, ...]:
-    loops, left = [], dict.fromkeys(joined)
+    """Vertices one after the other around each polygon."""
+    loops = []
+    left = dict.fromkeys(joined)
     while left:
-        key, line = next(iter(left)), []
+        key = next(iter(left))
+        line = []
         while key in left:
             del left[key]
             line.append(at[key])

@@ -4,6 +4,7 @@ There Su x Sv turns over, and points into the material for a few thousandths of 
 straight on: seen from as far away as a machining tolerance it has one normal, that of the surface beside the fold.
 """
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -63,11 +64,16 @@ class TurningCells(NamedTuple):
         """Numbers of the parameters (n, 2) that lie in cells that may turn over."""
         if not self.turning.any():
             return np.empty(0, dtype=np.intp)
-        u, v = uv.T
-        within = (u >= self.lines_u[0]) & (u <= self.lines_u[-1]) & (v >= self.lines_v[0]) & (v <= self.lines_v[-1])
-        i = np.clip(np.searchsorted(self.lines_u, u, side="right") - 1, 0, len(self.lines_u) - 2)
-        j = np.clip(np.searchsorted(self.lines_v, v, side="right") - 1, 0, len(self.lines_v) - 2)
-        return np.flatnonzero(within & self.turning[i, j])
+        i, in_u = _cells_along(self.lines_u, uv[:, 0])
+        j, in_v = _cells_along(self.lines_v, uv[:, 1])
+        return np.flatnonzero(in_u & in_v & self.turning[i, j])
+
+
+def _cells_along(lines: Array, places: Array) -> tuple[Index, Bools]:
+    """Numbers of the cells between lines in which places lie, and whether they lie in any."""
+    within = (places >= lines[0]) & (places <= lines[-1])
+    cell = np.searchsorted(lines, places, side="right") - 1
+    return np.clip(cell, 0, len(lines) - 2), np.asarray(within)
 
 
 class Folds(NamedTuple):
@@ -123,7 +129,8 @@ class _NetCells(NamedTuple):
     def of(data: SurfaceData, finer: int) -> "_NetCells":
         """Cells so many times finer than usual."""
         knots_u, knots_v, _, pu, pv, _ = data
-        lines_u, lines_v = _cell_lines(knots_u, pu, finer), _cell_lines(knots_v, pv, finer)
+        lines_u = _cell_lines(knots_u, pu, finer)
+        lines_v = _cell_lines(knots_v, pv, finer)
         step = max(1, _AT_ONCE // ((len(lines_v) - 1) * (pu + 1) * (pv + 1)))
         nets = [bezier_nets(data, lines_u[first:first + step + 1], lines_v)
                 for first in range(0, len(lines_u) - 1, step)]
@@ -135,8 +142,9 @@ class _NetCells(NamedTuple):
 def _cell_lines(knots: Array, degree: int, finer: int) -> Array:
     """The knots of the domain and lines that cut the spans between them evenly."""
     ends = np.unique(knots[degree:len(knots) - degree])
-    parts = finer * max(_PARTS, -(-_CELLS // (len(ends) - 1)))
-    between = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(parts) / parts)
+    parts = finer * max(_PARTS, math.ceil(_CELLS / (len(ends) - 1)))
+    shares = np.arange(parts) / parts
+    between = ends[:-1, None] + np.diff(ends)[:, None] * shares
     return np.append(between.ravel(), ends[-1])
 
 
@@ -149,7 +157,8 @@ def _turning(nets: Array) -> Bools:
     # w Su is the derivative of w (S - centre), less (S - centre) times that of w.
     moments = weight * (points - centre)
     radius = np.linalg.norm(points - centre, axis=-1).max(axis=(2, 3))[:, :, None, None]
-    axes, widths = [], []
+    axes = []
+    widths = []
     for along in (2, 3):
         slack = radius * np.abs(np.diff(weight[..., 0], axis=along))
         axis, width = _cone(np.diff(moments, axis=along), slack)
@@ -160,7 +169,8 @@ def _turning(nets: Array) -> Bools:
     for along in (2, 3):
         for end in (0, -1):
             side = points.take([end], axis=along)
-            pole = turning & (np.ptp(side, axis=(2, 3)) < _ONE_POINT).all(axis=-1)
+            one_point = (np.ptp(side, axis=(2, 3)) < _ONE_POINT).all(axis=-1)
+            pole = turning & one_point
             if pole.any():
                 at_the_pole = nets[pole] if end == -1 else np.flip(nets[pole], along - 1)
                 turning[pole] = _turning_beside_pole(at_the_pole if along == 3 else at_the_pole.swapaxes(1, 2))
@@ -186,19 +196,20 @@ def _turning_beside_pole(nets: Array) -> Bools:
     The places S - pole, and with them Su, are (1 - v) times another net.
     """
     weight = nets[..., 3:]
-    moments = weight * (nets[..., :3] / weight - nets[:, :1, -1:, :3] / weight[:, :1, -1:])
+    points = nets[..., :3] / weight
+    moments = weight * (points - points[:, :1, -1:])
     degree = moments.shape[2] - 1
     factor = moments[:, :, :-1] * (degree / (degree - np.arange(degree)))[:, None]
     radius = np.linalg.norm(factor, axis=-1).max(axis=(1, 2)) / weight.min(axis=(1, 2, 3))
     # w Su is the derivative of w (S - pole), less (S - pole) times that of w; both have the factor 1 - v.
     slack = radius[:, None, None] * np.abs(np.diff(weight[..., 0], axis=1)).max(axis=2, keepdims=True)
     legs = np.diff(factor, axis=1)
-    around = _cone(legs[None], np.broadcast_to(slack, legs.shape[:-1])[None])
+    around, around_width = _cone(legs[None], np.broadcast_to(slack, legs.shape[:-1])[None])
     distance = np.linalg.norm(moments / weight, axis=-1).max(axis=(1, 2))
     slack = distance[:, None, None] * np.abs(np.diff(weight[..., 0], axis=2))
-    towards = _cone(np.diff(moments, axis=2)[None], slack[None])
-    apart = np.arccos(np.clip(np.abs(dot(around[0], towards[0])), 0.0, 1.0))
-    return np.asarray((around[1] + towards[1] >= apart)[0])
+    towards, towards_width = _cone(np.diff(moments, axis=2)[None], slack[None])
+    apart = np.arccos(np.clip(np.abs(dot(around, towards)), 0.0, 1.0))
+    return np.asarray((around_width + towards_width >= apart)[0])
 
 
 def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
@@ -215,8 +226,10 @@ def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
 
 def _short(points: Array) -> Bools:
     """Which Bezier nets (nu, nv, pu + 1, pv + 1, 3) have a side no longer than a fold."""
-    sides = [points[:, :, -1, [0, -1]] - points[:, :, 0, [0, -1]], points[:, :, [0, -1], -1] - points[:, :, [0, -1], 0]]
-    return np.asarray((np.linalg.norm(sides, axis=-1) < 2 * REACH).any(axis=(0, 3)))
+    along_u = points[:, :, -1, [0, -1]] - points[:, :, 0, [0, -1]]
+    along_v = points[:, :, [0, -1], -1] - points[:, :, [0, -1], 0]
+    lengths = np.linalg.norm([along_u, along_v], axis=-1)
+    return np.asarray((lengths < 2 * REACH).any(axis=(0, 3)))
 
 
 def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
@@ -238,7 +251,8 @@ def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
     **Properties**: 1. places farther than 0.015 mm from every place where Su x Sv turns over keep their normals;
     2. a surface that leaves its own plane by more than 0.0005 mm there keeps its normals.
     """
-    rest, found = surface.turning_cells.rows_in(uv), [NO_FOLDS]
+    rest = surface.turning_cells.rows_in(uv)
+    found = [NO_FOLDS]
     for axis in (0, 1):
         if len(rest):
             one = _folds_along(surface, axis, uv[rest], normal[rest])
@@ -251,7 +265,9 @@ def _folds_along(surface: "NurbsSurface", axis: int, uv: Array, normal: Array) -
     """Places whose surroundings along one parameter agree, and contradict what is between them."""
     d = surface.evaluate(uv)
     first, second, sound = _places_beside(surface, axis, uv)
-    far, inner, areas = [], [], [_area(d)]
+    far = []
+    inner = []
+    areas = [_area(d)]
     for place in (first, second):
         beside = surface.evaluate(place)
         far.append(np.linalg.norm(beside.point - d.point, axis=1)[:, None])
@@ -259,13 +275,17 @@ def _folds_along(surface: "NurbsSurface", axis: int, uv: Array, normal: Array) -
         areas.append(_area(beside))
         sound &= ~degenerate(beside)
     # On one side of a place the nearer normal stands for all; between two places the normal turns evenly.
-    between = (first[:, axis] < uv[:, axis]) != (second[:, axis] < uv[:, axis])
+    own = uv[:, axis]
+    between = (first[:, axis] < own) != (second[:, axis] < own)
     around = np.where(between[:, None], far[1] * inner[0] + far[0] * inner[1], inner[0])
     size = np.linalg.norm(around, axis=1)
     around /= np.where(size > 0, size, 1.0)[:, None]
     against = dot(normal, around) < _AGAINST
-    rows = np.flatnonzero(sound & (dot(*inner) > _AGREE) & (against | (np.min(areas, 0) < _EVEN * np.max(areas, 0))))
-    against, flat = against[rows], np.ones(len(rows), dtype=bool)
+    agree = dot(*inner) > _AGREE
+    uneven = np.min(areas, axis=0) < _EVEN * np.max(areas, axis=0)
+    rows = np.flatnonzero(sound & agree & (against | uneven))
+    against = against[rows]
+    flat = np.ones(len(rows), dtype=bool)
     opposite = _end_opposite(surface, axis, uv, first)
     for place, plane, asked in ((first, inner[0], sound), (second, inner[1], sound), (opposite, inner[0], ~between)):
         # What has left a plane is no fold, whatever lies on the other ways.
@@ -295,14 +315,16 @@ def _look_on_the_way(surface: "NurbsSurface", ways: tuple[Array, Array], planes:
     planes : (k, 3), (k, 3) array
         Normals of the surroundings, and of the planes.
     """
+    begin, end = ways
+    around, plane = planes
     share = np.linspace(0.0, 1.0, _ON_THE_WAY)[:, None, None]
-    uv = (ways[0] + share * (ways[1] - ways[0])).reshape(-1, 2)
+    uv = (begin + share * (end - begin)).reshape(-1, 2)
     d = surface.evaluate(uv)
-    shape = (_ON_THE_WAY, len(ways[0]), 3)
-    turn = dot(normals(d, inward=surface.inward(uv)).reshape(shape), planes[0])
-    off = d.point.reshape(shape)
-    off = off - off[0]
-    level = np.abs(dot(off, planes[1])).max(axis=0) <= FLAT
+    shape = (_ON_THE_WAY, len(begin), 3)
+    turn = dot(normals(d, inward=surface.inward(uv)).reshape(shape), around)
+    point = d.point.reshape(shape)
+    off = point - point[0]
+    level = np.abs(dot(off, plane)).max(axis=0) <= FLAT
     level &= np.linalg.norm(off, axis=-1).max(axis=0) <= _AWAY * REACH
     contradicts = ((turn < _AGAINST) & ~degenerate(d).reshape(shape[:2])).any(axis=0)
     return np.asarray(contradicts), np.asarray(level)
@@ -320,8 +342,11 @@ def _places_beside(surface: "NurbsSurface", axis: int, uv: Array) -> tuple[Array
     """Two places beside each one along a parameter, on both sides where the surface goes on, and whether found."""
     before, has_before = _place_at(surface, axis, uv, -1.0, REACH)
     after, has_after = _place_at(surface, axis, uv, 1.0, REACH)
-    first, second, sound = np.where(has_before[:, None], before, after), after, has_before & has_after
-    for side, rows in ((-1.0, np.flatnonzero(has_before & ~has_after)), (1.0, np.flatnonzero(has_after & ~has_before))):
+    first = np.where(has_before[:, None], before, after)
+    second = after
+    sound = has_before & has_after
+    for side, alone in ((-1.0, has_before & ~has_after), (1.0, has_after & ~has_before)):
+        rows = np.flatnonzero(alone)
         if len(rows):
             second[rows], sound[rows] = _place_at(surface, axis, uv[rows], side, _SECOND * REACH)
     return first, second, sound
@@ -332,16 +357,23 @@ def _place_at(surface: "NurbsSurface", axis: int, uv: Array, side: float, distan
     surface reaches that far."""
     d = surface.evaluate(uv)
     low, high = surface.domain[axis]
-    room = np.maximum(high - uv[:, axis] if side > 0 else uv[:, axis] - low, 0.0)
+    own = uv[:, axis]
+    room = np.maximum(high - own if side > 0 else own - low, 0.0)
     speed = np.linalg.norm((d.su, d.sv)[axis], axis=1)
     step = np.minimum(1.2 * distance / np.maximum(speed, np.finfo(float).tiny), room)
-    near, beyond = np.zeros(len(uv)), np.full(len(uv), np.inf)
-    place, found, rest = uv.copy(), np.zeros(len(uv), dtype=bool), np.arange(len(uv))
+    # The longest step known to be too short, and the shortest one known to be too long.
+    near = np.zeros(len(uv))
+    beyond = np.full(len(uv), np.inf)
+    place = uv.copy()
+    found = np.zeros(len(uv), dtype=bool)
+    rest = np.arange(len(uv))
     for _ in range(_STEPS):
-        place[rest, axis] = uv[rest, axis] + side * step[rest]
+        place[rest, axis] = own[rest] + side * step[rest]
         away = np.linalg.norm(surface.evaluate(place[rest]).point - d.point[rest], axis=1)
-        short, far = away < distance, away > _MOST * distance
-        near[rest[short]], beyond[rest[far]] = step[rest[short]], step[rest[far]]
+        short = away < distance
+        far = away > _MOST * distance
+        near[rest[short]] = step[rest[short]]
+        beyond[rest[far]] = step[rest[far]]
         found[rest[~short & ~far]] = True
         rest = rest[far | (short & (step[rest] < room[rest]))]
         if not len(rest):

@@ -33,7 +33,8 @@ def line_of(face: Face, loop: Array) -> BorderLoop:
     """
     uv = loop_points(face, loop, STEP)
     point = face.evaluate(uv).point
-    return BorderLoop(uv, point, np.cumsum(np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)))
+    steps = np.linalg.norm(np.roll(point, -1, axis=0) - point, axis=1)
+    return BorderLoop(uv, point, np.cumsum(steps))
 
 
 def on_border(face: Face, foot: Array, lines: list[BorderLoop], near: float) -> tuple[Array, Array]:
@@ -51,27 +52,38 @@ def on_border(face: Face, foot: Array, lines: list[BorderLoop], near: float) -> 
     """
     from scipy.spatial import cKDTree
 
-    uv, along, least = np.zeros((len(foot), 2)), np.zeros((len(foot), 3)), np.full(len(foot), np.inf)
+    uv = np.zeros((len(foot), 2))
+    along = np.zeros((len(foot), 3))
+    least = np.full(len(foot), np.inf)
     share = np.linspace(-1.0, 1.0, 2 * _PIECES + 1)
     for line in lines:
         distance, k = cKDTree(line.point).query(foot)
         rows = np.flatnonzero(distance < np.minimum(least, STEP) + near)
         if not len(rows):
             continue
-        k, count = k[rows], len(line.uv)
-        back, ahead = line.uv[(k - 1) % count] - line.uv[k], line.uv[(k + 1) % count] - line.uv[k]
+        # Densely along the pieces of the loop on both sides of its nearest point.
+        k = k[rows]
+        count = len(line.uv)
+        own = line.uv[k]
+        back = line.uv[(k - 1) % count] - own
+        ahead = line.uv[(k + 1) % count] - own
         way = np.maximum(-share, 0.0)[:, None] * back[:, None] + np.maximum(share, 0.0)[:, None] * ahead[:, None]
-        place = line.uv[k][:, None] + way
+        place = own[:, None] + way
         point = face.evaluate(place.reshape(-1, 2)).point.reshape(len(rows), -1, 3)
         step = np.diff(point, axis=1)
         size = np.maximum(dot(step, step), 1e-300)
-        at = np.clip(dot(foot[rows][:, None] - point[:, :-1], step) / size, 0.0, 1.0)
-        gap = np.linalg.norm(point[:, :-1] + at[..., None] * step - foot[rows][:, None], axis=2)
-        j, i = gap.argmin(axis=1), np.arange(len(rows))
-        better = gap[i, j] < least[rows]
+        begin = point[:, :-1]
+        own_foot = foot[rows][:, None]
+        at = np.clip(dot(own_foot - begin, step) / size, 0.0, 1.0)
+        gap = np.linalg.norm(begin + at[..., None] * step - own_foot, axis=2)
+        i = np.arange(len(rows))
+        j = gap.argmin(axis=1)
+        nearest = gap[i, j]
+        better = nearest < least[rows]
         found = place[i, j] + at[i, j][:, None] * (place[i, j + 1] - place[i, j])
-        uv[rows[better]], along[rows[better]] = found[better], step[i, j][better]
-        least[rows[better]] = gap[i, j][better]
+        uv[rows[better]] = found[better]
+        along[rows[better]] = step[i, j][better]
+        least[rows[better]] = nearest[better]
     return uv, along
 
 
@@ -86,6 +98,10 @@ def in_parameters(face: Face, uv: Array, way: Array) -> Array:
         mm
     """
     d = face.evaluate(uv)
-    e, f, g = dot(d.su, d.su), dot(d.su, d.sv), dot(d.sv, d.sv)
-    a, b, size = dot(way, d.su), dot(way, d.sv), np.maximum(e * g - f * f, 1e-300)
-    return np.stack([(g * a - f * b) / size, (e * b - f * a) / size], axis=1)
+    e = dot(d.su, d.su)
+    f = dot(d.su, d.sv)
+    g = dot(d.sv, d.sv)
+    a = dot(way, d.su)
+    b = dot(way, d.sv)
+    determinant = np.maximum(e * g - f * f, 1e-300)
+    return np.stack([(g * a - f * b) / determinant, (e * b - f * a) / determinant], axis=1)

@@ -41,10 +41,13 @@ def _rows(pairs: Pairs, which: NDArray[np.bool_]) -> Pairs:
 
 def _zero_numpy(width: Array, slope: tuple[Array, Array], other: tuple[Array, Array]) -> Array:
     """`sweep._zero` on arrays."""
-    (da, db), (c, dc) = slope, other
+    da, db = slope
+    c, dc = other
     three = (dc != da) & (dc != db)
     safe = np.where(three, dc, 2 * db + 1.0)
-    part = width * da * safe / ((db - da) * (db - safe)) + c * da * db / ((safe - da) * (safe - db))
+    of_end = width * da * safe / ((db - da) * (db - safe))
+    of_other = c * da * db / ((safe - da) * (safe - db))
+    part = of_end + of_other
     chord = -da / (db - da) * width
     return np.asarray(np.where(three & (0.0 < part) & (part < width), part, chord))
 
@@ -64,17 +67,24 @@ def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array
         As `sweep.least_over_motion` returns them.
     """
     count = len(t)
-    a, b = np.zeros(count), np.ones(count)
-    (va, da, ta), (vb, db, tb) = _moment(pairs, a, t), _moment(pairs, b, t)
-    at_start, at_end = da >= 0, (da < 0) & (db <= 0)
-    low, along = np.where(at_end, vb, va), np.where(at_end, tb, ta)
+    # Both ends of the span in which the least value lies: place, value, slope over the motion, and slope along the ray.
+    a = np.zeros(count)
+    b = np.ones(count)
+    va, da, ta = _moment(pairs, a, t)
+    vb, db, tb = _moment(pairs, b, t)
+    at_start = da >= 0
+    at_end = (da < 0) & (db <= 0)
+    low = np.where(at_end, vb, va)
+    along = np.where(at_end, tb, ta)
     value = low.copy()
     open_ = ~(at_start | at_end)
-    c, dc = a.copy(), da.copy()
+    c = a.copy()  # the end before the last step, for an interpolation through three places
+    dc = da.copy()
     for turn in range(120):
         if not open_.any():
             break
-        width, gap = b - a, np.where(open_, db - da, 1.0)
+        width = b - a
+        gap = np.where(open_, db - da, 1.0)
         low = np.where(open_, (va * db - vb * da + da * db * width) / gap, low)
         along = np.where(open_, (db * ta - da * tb) / gap, along)
         value = np.where(open_, np.minimum(va, vb), value)
@@ -89,10 +99,13 @@ def least_over_motion_numpy(pairs: Pairs, t: Array) -> tuple[Array, Array, Array
         s = a[i] + np.clip(part, 1e-3 * width[i], 0.999 * width[i])
         v, d, slope = _moment(_rows(pairs, open_), s, t[i])
         below = d <= 0
-        down, up = i[below], i[~below]
-        c[down], dc[down], c[up], dc[up] = a[down], da[down], b[up], db[up]
-        a[down], va[down], da[down], ta[down] = s[below], v[below], d[below], slope[below]
-        b[up], vb[up], db[up], tb[up] = s[~below], v[~below], d[~below], slope[~below]
+        for which, end in ((below, (a, va, da, ta)), (~below, (b, vb, db, tb))):
+            rows = i[which]
+            place, _, steepness, _ = end
+            c[rows] = place[rows]
+            dc[rows] = steepness[rows]
+            for old, new in zip(end, (s, v, d, slope), strict=True):
+                old[rows] = new[which]
     return value, np.minimum(low, value), along
 
 
@@ -109,7 +122,8 @@ def first_entry_numpy(pairs: Pairs, low: Array, high: Array) -> Array:
     -------
     (n,) array, inf where the ray stays outside
     """
-    t, entry = np.array(low, dtype=float), np.full(len(low), np.inf)
+    t = np.array(low, dtype=float)
+    entry = np.full(len(low), np.inf)
     open_ = t <= high
     _, _, axis, turn = pairs[1]
     change = np.linalg.norm(turn, axis=1) / np.linalg.norm(axis + 0.5 * turn, axis=1)
@@ -119,7 +133,8 @@ def first_entry_numpy(pairs: Pairs, low: Array, high: Array) -> Array:
             break
         value, least, along = least_over_motion_numpy(_rows(pairs, open_), t[i])
         slope = along - change[i]
-        found, lost = value <= ROOT, (value > ROOT) & (slope >= 0)
+        found = value <= ROOT
+        lost = (value > ROOT) & (slope >= 0)
         entry[i[found]] = t[i[found]]
         ahead = np.where(slope < 0, np.maximum(least, 0.5 * ROOT) / np.where(slope < 0, -slope, 1.0), 0.0)
         t[i] += np.where(found, 0.0, ahead)
@@ -138,8 +153,12 @@ def _update(body: tuple[Array, Motion], pair: tuple[Index, Index], ray: Array,
     level = np.where(cutting[k] & (remaining[i] > 0), np.minimum(remaining[i], ray[i, 7]), -gouge[i])
     value, slope, along = _moment(pairs, np.full(len(i), 0.5), level)
     change = np.linalg.norm(turn[k], axis=1) / np.linalg.norm(axis[k] + 0.5 * turn[k], axis=1)
-    keep = value - 0.5 * np.abs(slope) - np.maximum(along + change, 0) * (level + ray[i, 6]) <= LOOK
-    i, k, level, pairs = i[keep], k[keep], level[keep], _rows(pairs, keep)
+    least = value - 0.5 * np.abs(slope) - np.maximum(along + change, 0) * (level + ray[i, 6])
+    keep = least <= LOOK
+    i = i[keep]
+    k = k[keep]
+    level = level[keep]
+    pairs = _rows(pairs, keep)
     entry = first_entry_numpy(pairs, -ray[i, 6], level)
     order = np.argsort(-entry, kind="stable")
     deep = order[np.isfinite(entry[order]) & (-entry[order] > gouge[i[order]])]
@@ -170,7 +189,8 @@ def remove_numpy(body: tuple[Array, Motion], tables: tuple[Array, NDArray[np.boo
     slack, cutting, arrival = tables
     ray, ball, first = rays
     solid, (start, step, axis, turn) = body
-    middle, lean = start + 0.5 * step, axis + 0.5 * turn
+    middle = start + 0.5 * step
+    lean = axis + 0.5 * turn
     lean = lean / np.linalg.norm(lean, axis=1, keepdims=True)
     kinds = (cutting, arrival)
     together = max(1, _BLOCK_PAIRS // len(start))
@@ -180,8 +200,10 @@ def remove_numpy(body: tuple[Array, Motion], tables: tuple[Array, NDArray[np.boo
         z = np.einsum("bkj,kj->bk", w, lean)
         rho = np.linalg.norm(w - z[..., None] * lean, axis=2)
         bound = meridian_numpy(solid, rho, z)[0] - slack - part[:, 3:]
+        # The nearest motions first: after them little is left for most of the others.
         near = np.zeros_like(bound, dtype=bool)
-        np.put_along_axis(near, np.argsort(bound, axis=1, kind="stable")[:, :_NEAREST], True, axis=1)
+        nearest = np.argsort(bound, axis=1, kind="stable")[:, :_NEAREST]
+        np.put_along_axis(near, nearest, True, axis=1)
         for chosen in (near, ~near):
             for j in range(len(part)):
                 i = np.arange(first[b + j], first[b + j + 1])

@@ -8,6 +8,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.grids import grid_rows
+from toolaxis.numeric.parts import number_parts
 from toolaxis.shape.face import Face
 from toolaxis.verify.kept import SizedCache
 from toolaxis.verify.spatial_blocks import Blocks, blocks_of
@@ -120,54 +122,63 @@ def _make_cells(face: Face, size: float) -> SampledFace:
     nv = int(np.clip(np.ceil((v1 - v0) * tall / size), 4, MOST))
     u = u0 + (u1 - u0) * (np.arange(nu) + 0.5) / nu
     v = v0 + (v1 - v0) * (np.arange(nv) + 0.5) / nv
-    inner = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    inner = grid_rows(u, v)
     half = np.tile([0.5 * (u1 - u0) / nu, 0.5 * (v1 - v0) / nv], (len(inner), 1))
     line, way = _loop_pieces(face, size)
     count = len(inner) + len(line)
-    cells = _cells((face,), np.zeros(count, dtype=np.int64), np.vstack([inner, line]), np.vstack([half, way]),
-                   np.arange(count) >= len(inner))
+    owner = np.zeros(count, dtype=np.int64)
+    edge = np.arange(count) >= len(inner)
+    cells = _cells((face,), owner, np.vstack([inner, line]), np.vstack([half, way]), edge)
     return SampledFace(cells, blocks_of(cells.point))
 
 
 def _loop_pieces(face: Face, size: float) -> tuple[Array, Array]:
     """Middles and half ways of the pieces of a face's trim loops."""
-    middles, ways = [], []
+    middles = []
+    ways = []
     for loop in face.outline:
         way = np.roll(loop, -1, axis=0) - loop
         d = face.evaluate(loop + 0.5 * way)
         length = np.linalg.norm(d.su * way[:, :1] + d.sv * way[:, 1:], axis=1)
         least = 32 if len(loop) <= 8 else 1
         parts = np.clip(np.ceil(length / size), least, 4 * MOST).astype(np.int64)
-        owner = np.repeat(np.arange(len(loop)), parts)
-        step = (np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / parts[owner]
-        middles.append(loop[owner] + step[:, None] * way[owner])
-        ways.append(0.5 * way[owner] / parts[owner][:, None])
+        edge, number = number_parts(parts)
+        whole = parts[edge][:, None]
+        step = (number[:, None] + 0.5) / whole
+        middles.append(loop[edge] + step * way[edge])
+        ways.append(0.5 * way[edge] / whole)
     return np.concatenate(middles), np.concatenate(ways)
 
 
 def _cells(faces: tuple[Face, ...], owner: NDArray[np.int64], uv: Array, half: Array,
            edge: NDArray[np.bool_]) -> SampleCells:
     """Evaluate centres and drop cells that do not touch their face."""
-    point, radius = np.zeros((len(uv), 3)), np.zeros(len(uv))
-    on_face, keep = edge.copy(), edge.copy()
+    point = np.zeros((len(uv), 3))
+    radius = np.zeros(len(uv))
+    on_face = edge.copy()
+    keep = edge.copy()
     corner = np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])
     for index in np.unique(owner):
         rows = np.flatnonzero(owner == index)
         d = faces[index].evaluate(uv[rows])
         point[rows] = d.point
-        h, e = half[rows], edge[rows]
-        along = np.linalg.norm(d.su * h[:, :1] + d.sv * h[:, 1:], axis=1)
-        other = np.linalg.norm(d.su * h[:, :1] - d.sv * h[:, 1:], axis=1)
-        bend = 0.5 * np.linalg.norm(d.suu, axis=1) * h[:, 0] ** 2 + 0.5 * np.linalg.norm(d.svv, axis=1) * h[:, 1] ** 2
-        bend += np.linalg.norm(d.suv, axis=1) * np.abs(h[:, 0] * h[:, 1])
-        radius[rows] = 1.1 * (np.where(e, along, np.maximum(along, other)) + bend)
-        inner = rows[~e]
+        on_loop = edge[rows]
+        du, dv = half[rows].T
+        a = d.su * du[:, None]
+        b = d.sv * dv[:, None]
+        along = np.linalg.norm(a + b, axis=1)
+        other = np.linalg.norm(a - b, axis=1)
+        bend = 0.5 * np.linalg.norm(d.suu, axis=1) * du**2 + 0.5 * np.linalg.norm(d.svv, axis=1) * dv**2
+        bend += np.linalg.norm(d.suv, axis=1) * np.abs(du * dv)
+        radius[rows] = 1.1 * (np.where(on_loop, along, np.maximum(along, other)) + bend)
+        inner = rows[~on_loop]
         centre = faces[index].contains(uv[inner])
         around = (uv[inner][:, None] + corner * half[inner][:, None]).reshape(-1, 2)
         on_face[inner] = centre
         keep[inner] = centre | faces[index].contains(around).reshape(-1, 4).any(axis=1)
-    return SampleCells(owner, uv, half, edge, point, radius, on_face,
-                       np.full(len(uv), np.inf)).rows(np.flatnonzero(keep))
+    unknown = np.full(len(uv), np.inf)
+    every = SampleCells(owner, uv, half, edge, point, radius, on_face, unknown)
+    return every.rows(np.flatnonzero(keep))
 
 
 def share_cells(cells: SampleCells, owner: int) -> SampleCells:
@@ -191,12 +202,13 @@ def split(faces: tuple[Face, ...], cells: SampleCells) -> SampleCells:
     cells : SampleCells
     """
     third = np.array([-2.0, 0.0, 2.0]) / 3
-    inner, line = np.flatnonzero(~cells.edge), np.flatnonzero(cells.edge)
-    offset = np.stack(np.meshgrid(third, third, indexing="ij"), axis=-1).reshape(-1, 2)
-    uv = (cells.uv[inner][:, None] + offset * cells.half[inner][:, None]).reshape(-1, 2)
-    loop = (cells.uv[line][:, None] + third[:, None] * cells.half[line][:, None]).reshape(-1, 2)
-    half = np.vstack([np.repeat(cells.half[inner], 9, axis=0), np.repeat(cells.half[line], 3, axis=0)]) / 3
-    owner = np.append(np.repeat(cells.owner[inner], 9), np.repeat(cells.owner[line], 3))
+    inner = cells.rows(np.flatnonzero(~cells.edge))
+    line = cells.rows(np.flatnonzero(cells.edge))
+    offset = grid_rows(third, third)
+    uv = (inner.uv[:, None] + offset * inner.half[:, None]).reshape(-1, 2)
+    loop = (line.uv[:, None] + third[:, None] * line.half[:, None]).reshape(-1, 2)
+    half = np.vstack([np.repeat(inner.half, 9, axis=0), np.repeat(line.half, 3, axis=0)]) / 3
+    owner = np.append(np.repeat(inner.owner, 9), np.repeat(line.owner, 3))
     return _cells(faces, owner, np.vstack([uv, loop]), half, np.arange(len(owner)) >= len(uv))
 
 

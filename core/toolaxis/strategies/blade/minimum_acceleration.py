@@ -54,11 +54,14 @@ class LeastCurve:
         lengths : (n,) array_like
         """
         s = np.asarray(lengths, dtype=float)
-        k = np.clip(np.searchsorted(self.lengths, s, side="right") - 1, 0, len(self.lengths) - 2)
-        t, h = s - self.lengths[k], (self.lengths[k + 1] - self.lengths[k])
-        jerk = (self.bend[k + 1] - self.bend[k]) / h
-        return np.stack([self.theta[k] + t * (self.slope[k] + t * (self.bend[k] / 2 + t * jerk / 6)),
-                         self.slope[k] + t * (self.bend[k] + t * jerk / 2), self.bend[k] + t * jerk])
+        k = np.searchsorted(self.lengths, s, side="right") - 1
+        k = np.clip(k, 0, len(self.lengths) - 2)
+        t = s - self.lengths[k]
+        bend = self.bend[k]
+        slope = self.slope[k]
+        jerk = np.diff(self.bend)[k] / np.diff(self.lengths)[k]
+        angle = self.theta[k] + t * (slope + t * (bend / 2 + t * jerk / 6))
+        return np.stack([angle, slope + t * (bend + t * jerk / 2), bend + t * jerk])
 
 
 def nodes_of(free: AngleChannel, count: int = NODES) -> NDArray[np.intp]:
@@ -70,10 +73,11 @@ def nodes_of(free: AngleChannel, count: int = NODES) -> NDArray[np.intp]:
     count : int
     """
     middle = (free.low + free.high) / 2
-    shares = [(rows - rows[0]) / max(float(rows[-1] - rows[0]), 1e-12) for rows in (free.lengths, middle)]
-    measure = EVEN * shares[0] + (1 - EVEN) * shares[1]
+    along, risen = ((rows - rows[0]) / max(float(rows[-1] - rows[0]), 1e-12) for rows in (free.lengths, middle))
+    measure = EVEN * along + (1 - EVEN) * risen
+    last = len(measure) - 1
     chosen = np.searchsorted(measure, np.linspace(0, measure[-1], count))
-    return np.unique(np.concatenate([[0], np.minimum(chosen, len(measure) - 1), [len(measure) - 1]]))
+    return np.unique(np.concatenate([[0], np.minimum(chosen, last), [last]]))
 
 
 class LeastProgramme:
@@ -102,14 +106,26 @@ class LeastProgramme:
         x = span[nodes_of(free, count)] / span[-1]
         self.places = x[1:-1]
         self.knots = np.concatenate([np.zeros(3), x, np.ones(3)])
-        t, control = self.knots, np.eye(len(x) + 2)
+        t = self.knots
+        control = np.eye(len(x) + 2)
         self.first = 3 * np.diff(control, axis=0) / (t[4:-1] - t[1:-4])[:, None]
         self.second = 2 * np.diff(self.first, axis=0) / (t[4:-2] - t[2:-4])[:, None]
-        jumps, widths = np.diff(self.second, axis=0), np.diff(x) / rise
-        rows = [(self.second, 1.0, 0.0), (-self.second, 1.0, 0.0), (jumps, widths, 0.0), (-jumps, widths, 0.0),
-                (-self.first, 0.0, 0.0), (self.first, 0.0, 1.0)]
-        self.rows = vstack([hstack([csr_array(part), *(csr_array(-np.broadcast_to(peak, len(part))[:, None])
-                                                       for peak in peaks)]) for part, *peaks in rows]).tocsr()
+        jumps = np.diff(self.second, axis=0)
+        widths = np.diff(x) / rise
+
+        def below(part: Array, acceleration: ArrayLike, velocity: ArrayLike) -> Any:
+            """Rows that keep forms of the control values below so much of both peaks."""
+            peaks = [-np.broadcast_to(peak, len(part))[:, None] for peak in (acceleration, velocity)]
+            return hstack([csr_array(columns) for columns in (part, *peaks)])
+
+        self.rows = vstack([
+            below(self.second, 1.0, 0.0),
+            below(-self.second, 1.0, 0.0),
+            below(jumps, widths, 0.0),
+            below(-jumps, widths, 0.0),
+            below(-self.first, 0.0, 0.0),
+            below(self.first, 0.0, 1.0),
+        ]).tocsr()
 
     def solve(self, free: AngleChannel, start: float, end: float) -> LeastCurve:
         """The curve of one layer.
@@ -135,21 +151,24 @@ class LeastProgramme:
         cost[-2:] = 1.0, _VELOCITY
         for _ in range(_ROUNDS):
             low, high = (scale.angles(np.interp(self.places, x, side)) for side in (free.low, free.high))
-            at = hstack([csr_array(BSpline.design_matrix(self.places, self.knots, 3)),
-                         csr_array((len(self.places), 2))])
+            angles = csr_array(BSpline.design_matrix(self.places, self.knots, 3))
+            at = hstack([angles, csr_array((len(self.places), 2))])
             most = np.concatenate([np.zeros(self.rows.shape[0]), high, -low])
             found = _solve(cost, vstack([self.rows, at, -at]).tocsr(), bound, most)[:-2]
             theta = BSpline(self.knots, found, 3)(x)
             out = np.maximum(scale.angles(free.low) - theta, theta - scale.angles(free.high))
-            worst = np.flatnonzero((out[1:-1] > _LEFT) & (out[1:-1] >= out[:-2]) & (out[1:-1] >= out[2:])) + 1
+            inner = out[1:-1]
+            worst = np.flatnonzero((inner > _LEFT) & (inner >= out[:-2]) & (inner >= out[2:])) + 1
             if not len(worst):
                 break
             self.places = np.union1d(self.places, x[worst])
         nodes = self.knots[3:-3]
         slope = BSpline(self.knots[1:-1], self.first @ found, 2)(nodes)
-        turn = scale.turn
-        return LeastCurve(free.lengths[0] + scale.length * nodes, start + turn * BSpline(self.knots, found, 3)(nodes),
-                          turn / scale.length * slope, turn / scale.length**2 * (self.second @ found))
+        lengths = free.lengths[0] + scale.length * nodes
+        theta = start + scale.turn * BSpline(self.knots, found, 3)(nodes)
+        slope = scale.turn / scale.length * slope
+        bend = scale.turn / scale.length**2 * (self.second @ found)
+        return LeastCurve(lengths, theta, slope, bend)
 
 
 def least_curve(free: AngleChannel, start: float, end: float, count: int = NODES, rise: float = RISE) -> LeastCurve:
@@ -204,17 +223,23 @@ def least_peak(free: AngleChannel, start: float, end: float, count: int = _BOUND
     rows = nodes_of(free, count)
     s = free.lengths[rows]
     scale = _Scale(s, start, end)
-    h, n = np.diff(s) / scale.length, len(s)
+    h = np.diff(s) / scale.length
+    n = len(s)
     steps = diags_array(1 / h) @ (eye_array(n - 1, n, k=1) - eye_array(n - 1, n))
     bends = (eye_array(n - 2, n - 1, k=1) - eye_array(n - 2, n - 1)) @ steps
     arms = (h[1:] + h[:-1]) / 2
-    ends = coo_array((np.array([1.0, 1.0]) / h[[0, -1]], ([0, 1], [1, n - 2])), shape=(2, n))
-    moved = np.array([0.0, 1 / h[-1]])
-    above = vstack([hstack([bends, csr_array(-arms[:, None])]), hstack([-bends, csr_array(-arms[:, None])]),
-                    hstack([diags_array([1.0, -1.0]) @ ends, csr_array(-h[[0, -1]][:, None] / 2)]),
-                    hstack([-steps, csr_array((n - 1, 1))])]).tocsr()
-    most = np.concatenate([np.zeros(2 * (n - 2)), [0.0, -moved[1]], np.zeros(n - 1)])
-    low, high = scale.angles(free.low[rows]), scale.angles(free.high[rows])
+    by_peak = csr_array(-arms[:, None])
+    end_steps = h[[0, -1]]
+    ends = coo_array((np.array([1.0, 1.0]) / end_steps, ([0, 1], [1, n - 2])), shape=(2, n))
+    above = vstack([
+        hstack([bends, by_peak]),
+        hstack([-bends, by_peak]),
+        hstack([diags_array([1.0, -1.0]) @ ends, csr_array(-end_steps[:, None] / 2)]),
+        hstack([-steps, csr_array((n - 1, 1))]),
+    ]).tocsr()
+    most = np.concatenate([np.zeros(2 * (n - 2)), [0.0, -1 / h[-1]], np.zeros(n - 1)])
+    low = scale.angles(free.low[rows])
+    high = scale.angles(free.high[rows])
     low[[0, -1]] = high[[0, -1]] = 0.0, 1.0
     cost = np.concatenate([np.zeros(n), [1.0]])
     x = _solve(cost, above, [*zip(low, high, strict=True), (0.0, None)], most)
@@ -225,7 +250,9 @@ class _Scale:
     """Lengths and angles as shares of a layer, in which programmes are solved."""
 
     def __init__(self, s: Array, start: float, end: float) -> None:
-        self.length, self.start, self.turn = float(s[-1] - s[0]), start, end - start
+        self.length = float(s[-1] - s[0])
+        self.start = start
+        self.turn = end - start
         if not self.turn > 0:
             raise InvalidInput(f"a layer would turn from {start:.4f} to {end:.4f} rad: tool angles must grow on the "
                                "way around the blade")

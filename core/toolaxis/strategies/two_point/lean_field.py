@@ -46,10 +46,14 @@ class LeanField:
         step : float
         """
         j = int(np.clip(np.searchsorted(self.step, step) - 1, 0, len(self.step) - 2))
-        share = float(np.clip((step - self.step[j]) / (self.step[j + 1] - self.step[j]), 0.0, 1.0))
-        rows = ((1 - share) * table[:, j] + share * table[:, j + 1] for table in (self.direction, self.lift))
-        direction, lift = (np.interp(along, self.along, row) for row in rows)
-        return direction, lift
+        before, behind = self.step[j:j + 2]
+        share = float(np.clip((step - before) / (behind - before), 0.0, 1.0))
+
+        def interpolate(table: Array) -> Array:
+            row = (1 - share) * table[:, j] + share * table[:, j + 1]
+            return np.asarray(np.interp(along, self.along, row))
+
+        return interpolate(self.direction), interpolate(self.lift)
 
 
 def directions(work: TwoPointInputs, sense: int) -> LeanField:
@@ -81,27 +85,40 @@ def field_of(work: TwoPointInputs, sense: int) -> LeanField:
     before.
     """
     a0, a1, s0, s1 = work.span
-    along, step = np.linspace(a0, a1, GRID[0]), np.linspace(s0, s1, GRID[1] + 2)[1:-1]
+    along = np.linspace(a0, a1, GRID[0])
+    step = np.linspace(s0, s1, GRID[1] + 2)[1:-1]
     lifts = BRIDGE * work.scallop * np.array(LIFTS)
-    shape = (len(along), len(step), len(DIRECTIONS), len(lifts))
     uv = np.stack([work.uv(along, place) for place in step], axis=1)
-    wide = np.zeros(shape)
-    wide[:, :, STRAIGHT, 0] = _settled_width(work, sense, uv.reshape(-1, 2), (lifts[0], 0.0)).reshape(shape[:2])
-    poor = wide[:, :, STRAIGHT, 0] < ENOUGH * _formula_width(work, sense, uv.reshape(-1, 2)).reshape(shape[:2])
-    index = np.stack([rows[np.repeat(poor[..., None, None], shape[2], 2).repeat(shape[3], 3)]
-                      for rows in np.indices(shape)])
-    wide[tuple(index)] = _settled_width(work, sense, uv[index[0], index[1]], (lifts[index[3]], DIRECTIONS[index[2]]))
+    wide = _strip_widths(work, sense, uv, lifts)
     usual = work.tool.radius
     cost = (usual / np.maximum(wide.max(axis=3), 1e-3 * usual)) ** 2
     turn = TURNING * np.subtract.outer(DIRECTIONS, DIRECTIONS) ** 2
-    chosen = np.empty(shape[:2], dtype=int)
+    chosen = np.empty((len(along), len(step)), dtype=int)
     middle = len(step) // 2
-    for j in sorted(range(len(step)), key=lambda k: abs(k - middle)):
-        beside = [] if j == middle else [chosen[:, j + (1 if j < middle else -1)]]
-        here = cost[:, j] + sum(turn[:, rows].T for rows in beside)
-        chosen[:, j] = _cheapest(np.asarray(here), turn)
-    best = np.take_along_axis(wide, chosen[..., None, None], axis=2)[..., 0, :].argmax(axis=2)
-    return LeanField(along, step, DIRECTIONS[chosen], lifts[best])
+    for j in sorted(range(len(step)), key=lambda k: abs(k - middle)):  # from the middle outwards
+        here = cost[:, j]
+        if j != middle:
+            line_before = chosen[:, j + 1 if j < middle else j - 1]
+            here = here + turn[:, line_before].T
+        chosen[:, j] = _cheapest(here, turn)
+    in_direction = np.take_along_axis(wide, chosen[..., None, None], axis=2)[..., 0, :]
+    return LeanField(along, step, DIRECTIONS[chosen], lifts[in_direction.argmax(axis=2)])
+
+
+def _strip_widths(work: TwoPointInputs, sense: int, uv: Array, lifts: Array) -> Array:
+    """Widths of strips at places (k, m, 2) in all directions and from all lifts, (k, m, d, l) mm.
+
+    Where straight ahead is good enough nothing else is tried, and other widths stay zero.
+    """
+    places = uv.shape[:2]
+    rows = uv.reshape(-1, 2)
+    wide = np.zeros((*places, len(DIRECTIONS), len(lifts)))
+    straight = _settled_width(work, sense, rows, (lifts[0], 0.0)).reshape(places)
+    wide[:, :, STRAIGHT, 0] = straight
+    poor = straight < ENOUGH * _formula_width(work, sense, rows).reshape(places)
+    i, j, direction, lift = np.nonzero(np.broadcast_to(poor[..., None, None], wide.shape))
+    wide[i, j, direction, lift] = _settled_width(work, sense, uv[i, j], (lifts[lift], DIRECTIONS[direction]))
+    return wide
 
 
 def _settled_width(work: TwoPointInputs, sense: int, uv: Array, how: tuple[ArrayLike, ArrayLike]) -> Array:
@@ -114,17 +131,20 @@ def _settled_width(work: TwoPointInputs, sense: int, uv: Array, how: tuple[Array
 def _formula_width(work: TwoPointInputs, sense: int, uv: Array) -> Array:
     """Width of the formula's strip, (n,) mm; 0 where nothing is to be bridged, infinite where the cutter is too large:
     other directions are tried there."""
-    across, radius = work.setting(uv, sense).curvatures()[1], work.tool.flat_radius
-    fits = (across > 1e-6) & (radius * across < np.sin(STEEPEST))
+    _, across = work.setting(uv, sense).curvatures()
+    radius = work.tool.flat_radius
+    hollow = across > 1e-6
+    fits = hollow & (radius * across < np.sin(STEEPEST))
     rho = np.where(fits, 1 / np.where(fits, across, 1.0), 1e6)
     lead = two_point_lead(radius, rho, work.scallop)
     width = circle_strip_width(radius, rho, work.scallop, lead, work.scallop)
-    return np.where(fits, width, np.where(across > 1e-6, np.inf, 0.0))
+    return np.where(fits, width, np.where(hollow, np.inf, 0.0))
 
 
 def _cheapest(cost: Array, turn: Array) -> NDArray[np.intp]:
     """The cheapest choice in each row, (k,), with a price on each turn to the next."""
-    total, back = cost[0], []
+    total = cost[0]
+    back = []  # for each choice but in the first row, the best one before it
     for row in cost[1:]:
         paths = total[:, None] + turn
         back.append(paths.argmin(axis=0))
@@ -139,9 +159,9 @@ def _width(work: TwoPointInputs, setting: ContactSet, ring: CornerCircles) -> Ar
     """Width of what standing rings leave within the tolerance across the passes, (n,) mm."""
     d = work.face.evaluate(setting.uv)
     pace = np.linalg.norm(d.sv if work.feed == "u" else d.su, axis=1)
-    beside, height = ring.uv[:, FRONT, 1 - work.column], ring.height[:, FRONT]
-    ends = [strip_end(work.scallop, (beside, height), columns)[0] for columns in SIDES]
-    return np.asarray(np.abs(ends[0] - ends[1]) * pace)
+    lines = (ring.uv[:, FRONT, 1 - work.column], ring.height[:, FRONT])
+    (left, _), (right, _) = (strip_end(work.scallop, lines, columns) for columns in SIDES)
+    return np.asarray(np.abs(left - right) * pace)
 
 
 def strip_end(limit: float, lines: tuple[Array, Array], columns: range) -> tuple[Array, NDArray[np.int64]]:
@@ -160,8 +180,11 @@ def strip_end(limit: float, lines: tuple[Array, Array], columns: range) -> tuple
     bad = ~(height <= limit * (1 + 1e-6))
     last = across.shape[1] - 1
     k = np.where(bad.any(axis=1), np.argmax(bad, axis=1), last)
-    i, before = np.arange(len(k)), np.maximum(k - 1, 0)
+    i = np.arange(len(k))
+    before = np.maximum(k - 1, 0)
+    last_good = across[i, before]
+    below = limit - height[i, before]
     rise = height[i, k] - height[i, before]
-    share = np.where(bad[i, k] & (rise > 0), (limit - height[i, before]) / np.where(rise > 0, rise, 1.0), 1.0)
-    end = across[i, before] + np.clip(share, 0.0, 1.0) * (across[i, k] - across[i, before])
-    return np.where(np.isfinite(end), end, across[i, before]), k
+    share = np.where(bad[i, k] & (rise > 0), below / np.where(rise > 0, rise, 1.0), 1.0)
+    end = last_good + np.clip(share, 0.0, 1.0) * (across[i, k] - last_good)
+    return np.where(np.isfinite(end), end, last_good), k
