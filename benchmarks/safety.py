@@ -36,8 +36,8 @@ Array = NDArray[np.float64]
 
 #: Chord tolerance of the mesh, mm; points on an mm^2 of it; how far those are from borders, mm, where a face ends.
 _CHORD, _DENSITY, _BORDER = 0.001, 6.0, 0.1
-#: Places of the tool along a motion are no farther apart, mm.
-_STEP = 0.4
+#: Places of the tool along a motion: how far apart, mm, and how many at most.
+_STEP, _PLACES = 0.4, 6
 #: What points may lie off the exact part and figures may be rounded, mm.
 _SLACK = 0.0005
 #: Motions of an operation that are looked at, at most.
@@ -190,7 +190,7 @@ class Judge:
         motion : int
         """
         ends, axes = path.cl[motion - 1:motion + 1], path.axis[motion - 1:motion + 1]
-        count = 1 + int(np.ceil(np.linalg.norm(ends[1] - ends[0]) / _STEP))
+        count = min(1 + int(np.ceil(np.linalg.norm(ends[1] - ends[0]) / _STEP)), _PLACES)
         share = np.linspace(0, 1, count)[:, None]
         kind = Motion(int(path.kind[motion]))
         worst: dict[str, float] = {}
