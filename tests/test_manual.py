@@ -277,30 +277,37 @@ def test_the_code_of_the_page_on_cad_runs(tmp_path: Path) -> None:
     assert (tmp_path / "plan.step").is_file()
 
 
+def plans(*pages: str) -> list[list[str]]:
+    return [[*words, "--no-pictures"] for page in pages for words in commands(page) if words[0] == "plan"]
+
+
 def test_the_long_commands_are_understood(capsys: pytest.CaptureFixture[str]) -> None:
-    """Strategies, and the rack: they run with --long.  tests/job/test_rescheduling.py runs the two that follow them."""
-    found = [words for page in ("strategies.md", "tools.md") for words in commands(page)]
-    assert [words[0] for words in found] == ["plan", "plan", "reschedule", "post", "plan"]
-    for words in found:
-        if words[0] == "plan":
-            assert (ROOT / words[1]).is_file()
-            says_that_the_part_is_absent(words[2:], capsys)
-        else:
-            parser().parse_args(words)
+    """Strategies, and the rack.  tests/job/test_rescheduling.py runs the two that are not plans."""
+    assert [words[0] for words in commands("strategies.md")] == ["plan", "plan", "reschedule", "post"]
+    for words in commands("strategies.md")[2:]:
+        parser().parse_args(words)
+    for words in plans("strategies.md", "tools.md"):
+        assert (ROOT / words[1]).is_file()
+        says_that_the_part_is_absent(words[2:], capsys)
+
+
+@pytest.mark.parametrize("words", [
+    pytest.param(words, id=words[1], marks=[] if "blade" in words else pytest.mark.long)
+    for words in plans("strategies.md")])
+def test_the_plans_of_the_strategies_are_made(words: list[str], tmp_path: Path,
+                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("OCP")
+    monkeypatch.chdir(ROOT)
+    assert main([*words, "--out", str(tmp_path / "made")]) == 0
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("page", ["strategies.md", "tools.md"])
-def test_the_long_commands_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One after the other, `made.apt` being the passes of the blade."""
+@pytest.mark.xfail(strict=True, reason="what the first tool leaves is not cut out: borders coincide with the face's")
+def test_the_rack_finishes_its_part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("OCP")
-    monkeypatch.chdir(tmp_path)
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    for words in commands(page):
-        assert main([*words, "--no-pictures"] if words[0] == "plan" else words) == 0, words
-        if "blade" in words:
-            (made,) = (tmp_path / "out").glob("op01-*.apt")
-            shutil.copy(made, tmp_path / "made.apt")
+    (words,) = plans("tools.md")
+    monkeypatch.chdir(ROOT)
+    assert main([*words, "--out", str(tmp_path / "made")]) == 0
 
 
 def test_the_problems_of_the_open_benchmark_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
