@@ -13,6 +13,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.progress import Progress
 from toolaxis.regions import divide_by_reach as divide
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.divide_by_reach import _ROOM, LeastAreas, ReachDivision, _parts, _Reach, _shrink, divide_by_reach
@@ -129,6 +130,17 @@ def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(sc
         assert (one.path is None) == (other.path is None)
         assert one.path is None or np.array_equal(one.path.cl, other.path.cl)
         assert all(map(np.array_equal, one.face.trims, other.face.trims))
+
+
+def test_stopped_among_the_pieces_it_keeps_those_that_are_finished(scenes) -> None:
+    """Found: what these machine beside them was looked at, which was stopped too and took all of the plan with it."""
+    part, beside, seen = mushroom(scenes.plate, 1.5), np.eye(4), list[str]()
+    beside[0, 3] = 100.0
+    both = Part.from_faces([*part.faces, *part.transformed(beside).faces])
+    stopping = Progress(lambda stage, *_: seen.append(stage), lambda: any("face 7a" in one for one in seen))
+    made = ta.plan(both, "ball:3", 0.1, faces=[1, 7], workers=1, progress=stopping)
+    assert made.outcome == "cancelled" and any("division by reach" in one for one in seen)
+    assert [op.done for op in made.operations if op.face.number == 1][:2] == [True, True]
 
 
 def test_a_strip_has_what_its_passes_machine_beside_it_unless_a_step_over_is_asked_for(scenes) -> None:

@@ -1,7 +1,7 @@
 """Sub-surfaces, axes and operations of one plan: what `toolaxis.plan` sets going."""
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -409,9 +409,10 @@ class PlanningJob:
             done = (*done, *more)
         failed = {lost[k]: fail_operation(made[lost[k]], why) for k, why in found.faults.items()}
         rows: list[Operation] = []
-        for k, op in enumerate(made):
-            own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
-            rows += self._with_machined_beside(own) or [failed.get(k, op)]
+        with activate_progress(NO_PROGRESS) if cancelled else nullcontext():  # what is finished is kept
+            for k, op in enumerate(made):
+                own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
+                rows += self._with_machined_beside(own) or [failed.get(k, op)]
         return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
 
     def _share_axes(self, pieces: dict[int, list[Target]], done: Sequence[Operation], scene: ReachScene,
