@@ -971,8 +971,16 @@
    <translation>{} ist auch die Nullpunktverschiebung von {}: vor dem Programm für diese Orientierung einstellen</translation>
   </message>
   <message>
+   <source>{} is only {} across: check the unit of its file.</source>
+   <translation>{} misst nur {}: die Einheit der Datei prüfen.</translation>
+  </message>
+  <message>
    <source>{} is stale: {}. Compute it again.</source>
    <translation>{} ist überholt: {}. Bitte neu berechnen.</translation>
+  </message>
+  <message>
+   <source>{} is {} across: check the unit of its file.</source>
+   <translation>{} misst {}: die Einheit der Datei prüfen.</translation>
   </message>
   <message>
    <source>{} meet by {} mm</source>
@@ -1651,6 +1659,10 @@
    <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
+   <source>Lists all faces, or only those that can be seen in the 3D view from where one looks now, or only those that cannot: hidden bodies and what other faces cover. Choose it again when the view was turned.</source>
+   <translation>Listet alle Flächen auf, oder nur die, die in der 3D-Ansicht von da zu sehen sind, von wo man gerade blickt, oder nur die anderen: ausgeblendete Körper und was andere Flächen verdecken. Nach dem Drehen der Ansicht neu wählen.</translation>
+  </message>
+  <message>
    <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>
    <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
   </message>
@@ -2011,6 +2023,10 @@
    <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
   </message>
   <message>
+   <source>all faces</source>
+   <translation>alle Flächen</translation>
+  </message>
+  <message>
    <source>along parameters</source>
    <translation>längs der Parameter</translation>
   </message>
@@ -2111,8 +2127,16 @@
    <translation>größter Ruck längs der Bahnen</translation>
   </message>
   <message>
+   <source>hidden</source>
+   <translation>verdeckte</translation>
+  </message>
+  <message>
    <source>in parallel planes</source>
    <translation>in parallelen Ebenen</translation>
+  </message>
+  <message>
+   <source>in sight</source>
+   <translation>sichtbare</translation>
   </message>
   <message>
    <source>mean normals</source>
@@ -2403,6 +2427,10 @@
    <translation>Blisk mit 16 Schaufeln</translation>
   </message>
   <message>
+   <source>Dish</source>
+   <translation>Schale</translation>
+  </message>
+  <message>
    <source>Face with a boss</source>
    <translation>Fläche mit einem Zapfen</translation>
   </message>
@@ -2421,6 +2449,10 @@
   <message>
    <source>Hyperbolic paraboloid</source>
    <translation>Hyperbolisches Paraboloid</translation>
+  </message>
+  <message>
+   <source>Hyperbolic paraboloid along its rulings</source>
+   <translation>Hyperbolisches Paraboloid längs seiner Erzeugenden</translation>
   </message>
   <message>
    <source>Impeller with nine blades</source>

@@ -89,9 +89,10 @@ def test_every_example_of_the_menu_is_there_and_opens(desk):
     from freecad.toolaxis.gui.commands.examples import PARTS, Example
 
     assert all(Example(name).file.is_file() for name in PARTS)
+    assert {file.stem for file in Example("dish").file.parent.glob("*.step")} == set(PARTS), "none is left out"
     menus = desk.children(desk.widgets.QMenu, desk.window.menuBar())
     texts = [action.text().replace("&", "") for menu in menus for action in menu.actions()]
-    assert {"Examples", "Saddle", "Blisk with 16 blades"} <= set(texts)
+    assert {"Examples", *PARTS.values()} <= set(texts)
     desk.gui.runCommand("ToolAxis_Example_saddle")
     desk.pump(0.3)
     document = FreeCAD.ActiveDocument

@@ -11,6 +11,7 @@ QT_TRANSLATE_NOOP = FreeCAD.Qt.QT_TRANSLATE_NOOP
 
 #: Files in the folder of examples, and what they are called in the menu.
 PARTS = {"freeform": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Freeform face"),
+         "dish": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Dish"),
          "saddle": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Saddle"),
          "trimmed": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Trimmed face with a hole"),
          "outline": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Face with an irregular outline"),
@@ -21,6 +22,8 @@ PARTS = {"freeform": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Freeform face"),
          "manta": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Manta surface"),
          "biquintic": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Biquintic patch"),
          "hyperbolic_paraboloid": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Hyperbolic paraboloid"),
+         "hyperbolic_paraboloid_rules": QT_TRANSLATE_NOOP("ToolAxis_Examples",
+                                                          "Hyperbolic paraboloid along its rulings"),
          "blade": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Turbine blade"),
          "blisk": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Blisk with 16 blades"),
          "impeller": QT_TRANSLATE_NOOP("ToolAxis_Examples", "Impeller with nine blades")}
