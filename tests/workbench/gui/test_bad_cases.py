@@ -110,6 +110,19 @@ def test_two_documents(desk, part_file):
     assert desk.form("ToolAxisPlan") is form, "the other document does not matter"
 
 
+@pytest.mark.parametrize(("radius", "told"), [(2, "Ball is only 6.9 mm across: check the unit of"),
+                                              (4000, "Ball is 138"), (20, "Press Compute")])
+def test_a_part_of_another_unit_is_told_before_it_is_computed(desk, radius, told):
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Ball")
+    ball = document.addObject("Part::Sphere", "Ball")
+    ball.Radius = radius
+    document.recompute()
+    form = desk.start(ball)
+    assert form.message.text().startswith(told) and form.compute.isEnabled(), form.message.text()
+
+
 def test_faces_in_containers_links_and_bodies_keep_what_places_them(desk, wavy):
     import FreeCAD
     from freecad.toolaxis.gui.widgets.quantity import area_text

@@ -109,6 +109,45 @@ def test_tiny_skins_are_not_listed_but_machined(desk, skin):
     assert faces.marked == tuple(names[1:3])
 
 
+@pytest.mark.parametrize("camera", ["Orthographic", "Perspective"])
+def test_faces_that_cannot_be_seen_are_listed_alone_or_left_out(desk, camera):
+    import FreeCAD
+
+    document = FreeCAD.newDocument("Balls")
+    for name, radius, x, z in (("Above", 8, 0, 20), ("Below", 3, 0, 0), ("Beside", 5, 30, 0), ("Gone", 5, 60, 0)):
+        document.addObject("Part::Sphere", name).Radius = radius
+        document.getObject(name).Placement.Base = FreeCAD.Vector(x, 0, z)
+    document.recompute()
+    document.getObject("Gone").Visibility = False
+    view = desk.gui.getDocument(document.Name).ActiveView
+    view.setCameraType(camera)
+    view.viewTop()
+    view.fitAll()
+    form = desk.start(document.getObject("Above"))
+    for name in ("Below", "Beside", "Gone"):
+        desk.gui.Selection.addSelection(document.Name, name)
+    desk.press(form.addFaces)
+
+    def shown(way):
+        form.facesSeen.setFocus()
+        desk._key(form.facesSeen, getattr(desk.qt.Qt, f"Key_{way}"), "")
+        return [desk.text(form.faces, row).split(", ")[-1] for row in range(form.faces.count())
+                if not form.faces.isRowHidden(row)]
+
+    assert shown("Down") == ["Above", "Beside"] and form.facesSeen.currentText() == "in sight"
+    assert shown("Down") == ["Below", "Gone"] and form.facesSeen.currentText() == "hidden"
+    desk.shot(f"87-hidden-{camera}")
+    view.viewFront()
+    assert shown("Up") == ["Above", "Below", "Beside"]
+    form.facesFilter.setText("Be")
+    assert shown("Down") == [] and shown("Up") == ["Below", "Beside"]
+    form.facesFilter.setText("")
+    shown("Down")
+    form.faces.selectAll()
+    desk.press(form.removeFaces)
+    assert form.faces.count() == 3 and shown("Up") == shown("Up") == ["Above", "Below", "Beside"]
+
+
 def test_what_is_computed_is_lit_in_the_view(desk, grooved, form):
     panel = desk.opened[-1]()
     thing, name = grooved

@@ -14,6 +14,8 @@ _DATA = QtCore.Qt.UserRole
 _TICKED = 2  # Qt.Checked, which is a number in data
 #: Share of the area below which a skin is not listed unless it is looked for.
 _TINY = 1e-3
+#: Which faces are listed: all, those in sight, those that are hidden; the places of the field in the form.
+ALL, IN_SIGHT, HIDDEN = range(3)
 
 
 class FaceList:
@@ -28,6 +30,7 @@ class FaceList:
         self.widget = widget
         self._slots, self._sought = [], ""
         self._faces, self._skins, self._areas = [], (), {}
+        self._kind, self._hidden = ALL, frozenset()
 
     def on_change(self, slot):
         """Call a slot without arguments whenever faces come or go.
@@ -133,6 +136,24 @@ class FaceList:
         self._sought = text.strip()
         self._filter()
 
+    def show_kind(self, kind, hidden=()):
+        """Show only rows that are in sight, or only those that are hidden; the others stay in the list.
+
+        Parameters
+        ----------
+        kind : int
+            ALL, IN_SIGHT or HIDDEN.
+        hidden : sequence of (object, str)
+            Faces that cannot be seen.
+        """
+        self._kind, self._hidden = kind, frozenset(map(_key, hidden))
+        self._filter()
+
+    @property
+    def listed(self):
+        """The faces of all rows, those of skins that were not chosen among them."""
+        return tuple(face for k in range(self.widget.count()) for face in self._row(k))
+
     def _filter(self):
         """Hide what is not looked for, and take its mark away: nothing is removed unseen."""
         for row in range(self.widget.count()):
@@ -148,9 +169,15 @@ class FaceList:
         whole = sum(self._area(self._row(k)) or 0.0 for k in range(self.widget.count()))
         return bool(self._skins) and area is not None and area < _TINY * whole
 
+    def _is_of_kind(self, row):
+        """Whether a row is asked for; it is hidden where all its faces are."""
+        return self._kind == ALL or self._hidden.issuperset(map(_key, self._row(row))) == (self._kind == HIDDEN)
+
     def _matches(self, row):
+        if not self._is_of_kind(row):
+            return False
         if not self._sought:
-            return not self._is_tiny(row)
+            return self._kind == HIDDEN or not self._is_tiny(row)
         if self._sought.startswith("<"):
             limit = value_from_text(self._sought[1:], "mm")
             if limit is None:

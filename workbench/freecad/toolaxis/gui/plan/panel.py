@@ -16,10 +16,13 @@ from freecad.toolaxis.document.read_shapes import faces_by_number, titles_of
 from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.account import headline
+from freecad.toolaxis.gui.plan.camera import camera_of
+from freecad.toolaxis.gui.plan.face_list import ALL
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.move_origin import move_origin
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
+from freecad.toolaxis.gui.plan.part_size import size_note
 from freecad.toolaxis.gui.plan.player import PlanPlayer
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
@@ -38,6 +41,7 @@ from freecad.toolaxis.services.macros import again_lines, plan_line, record
 from freecad.toolaxis.services.messages import stale_text
 from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
+from freecad.toolaxis.services.sight import hidden_faces
 from freecad.toolaxis.services.tools import cutter_of
 from freecad.toolaxis.services.write_results import apply
 from PySide import QtWidgets
@@ -151,6 +155,7 @@ class PlanPanel(Panel):
         form.addFaces.clicked.connect(self._add_faces)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
         form.facesFilter.textChanged.connect(self.fields.faces.show_matching)
+        form.facesSeen.activated.connect(self._list_seen)
         form.faces.itemSelectionChanged.connect(self._point_out)
         form.tool.activated.connect(self._tool_chosen)
         form.compute.clicked.connect(self.compute)
@@ -170,6 +175,12 @@ class PlanPanel(Panel):
         self.fields.faces.add(faces)
         self._offer_bodies()
         self._changed()
+
+    def _list_seen(self, kind):
+        """List all faces, or those that can be seen as the view stands, or the others."""
+        listed = self.fields.faces.listed if kind != ALL else ()
+        beside = bodies_in(self.document, [thing for thing, _ in listed])
+        self.fields.faces.show_kind(kind, hidden_faces(listed, beside, camera_of(self.document)) if listed else ())
 
     def _offer_bodies(self):
         """Offer all bodies to be avoided but those that are machined."""
@@ -269,7 +280,10 @@ class PlanPanel(Panel):
             return stale_text(self.operation), True
         if plan is None:
             told = translate("ToolAxis", "Press Compute to find the axes.")
-            return (told if self.standing is None else f"{headline(self.standing)} {told}"), False
+            if self.standing is not None:
+                return f"{headline(self.standing)} {told}", False
+            odd = size_note(dict.fromkeys(thing for thing, _ in self.fields.faces.faces))
+            return (f"{odd} {told}" if odd else told), bool(odd)
         if self.computed is None:
             return translate("ToolAxis", "Something has changed: compute again."), True
         return outcome_sentence(plan)
