@@ -324,6 +324,7 @@ def test_the_wheel_changes_no_field_that_is_not_used(desk, form):
 @pytest.mark.parametrize(("schema", "number"), [("ImperialDecimal", 3), ("MmMin", 6), ("Internal", 0)])
 def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
     import FreeCAD
+    from freecad.toolaxis.gui.widgets.quantity import area_text
 
     names = FreeCAD.Units.listSchemas()
     before = FreeCAD.Units.getSchema()
@@ -331,6 +332,7 @@ def test_units_follow_freecads_settings(desk, wavy, remembered, schema, number):
     try:
         form = desk.start(*wavy)
         inches = schema == "ImperialDecimal"
+        assert area_text(0.0434) == ("0.000067 in²" if inches else "0.043 mm²"), "a small part has no faces of 0 mm²"
         form.tabs.setCurrentWidget(form.toolTab)
         assert desk.shown(form.diameter).endswith(" in" if inches else " mm")
         desk.type(form.diameter, "0.25 in")

@@ -79,6 +79,7 @@ def test_nothing_is_cut_off_in_german(german, wavy, resize, remembered):
     german.computed(form)
     german.pump(0.2)
     assert form.minimumSizeHint().width() <= room, "result"
+    assert form.operation.itemText(0).startswith("Fläche "), form.operation.itemText(0)
     assert hidden(form, ("message", "compute", "stop")) == []
     german.down(form.lockFeed)
     assert in_sight(form.lockAxis) and in_sight(form.lockFeed)

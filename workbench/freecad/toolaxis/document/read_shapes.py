@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass, replace
 
+import FreeCAD
 from freecad.toolaxis.document.work_origin import origin_in_document
+
+translate = FreeCAD.Qt.translate
 
 #: Surfaces that are no sculptured ones, as FreeCAD's Part names them.
 _PLAIN = ("Plane", "Cylinder", "Cone")
@@ -164,13 +167,13 @@ def titles_of(inputs):
     Returns
     -------
     dict of int to str
-        "Face 7"; with the part before it where there are several.
+        "Face 7" in FreeCAD's language; with the part before it where there are several.
     """
     from toolaxis.cad.freecad.documents import shape_of
 
     found = numbered(inputs, [shape_of(thing) for thing in inputs.things])
-    several = len(inputs.things) > 1
-    return {number: f"{thing.Label}: Face {own}" if several else f"Face {own}"
+    several, title = len(inputs.things) > 1, translate("ToolAxis", "Face {}")
+    return {number: f"{thing.Label}: {title.format(own)}" if several else title.format(own)
             for number, (thing, _, own) in found.items()}
 
 

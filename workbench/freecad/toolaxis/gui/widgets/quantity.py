@@ -74,7 +74,7 @@ def length_text(value, least=2, most=3):
 
 
 def area_text(value):
-    """An area with its unit, of square mm or inches.
+    """An area with its unit, of square mm or inches, with two digits that count at least.
 
     Parameters
     ----------
@@ -82,8 +82,10 @@ def area_text(value):
         mm^2
     """
     unit, factor = shown_unit("mm")
-    least = 0 if factor == 1.0 else 2
-    return f"{number_text(float(value) / factor**2, least, least)} {unit}²"
+    number, digits = float(value) / factor**2, 0 if factor == 1.0 else 2
+    while digits < _MOST_DIGITS and 0 < abs(number) < 10.0 ** (1 - digits):
+        digits += 1
+    return f"{number_text(number, digits, digits)} {unit}²"
 
 
 def fine_text(value):
