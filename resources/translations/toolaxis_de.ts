@@ -824,7 +824,7 @@
   </message>
   <message>
    <source>infeasible (proven)</source>
-   <translation>unmöglich (nachgewiesen)</translation>
+   <translation>unmöglich (bewiesen)</translation>
   </message>
   <message>
    <source>left to clean-up</source>
@@ -876,7 +876,7 @@
   </message>
   <message>
    <source>optimal (proven)</source>
-   <translation>optimal (nachgewiesen)</translation>
+   <translation>optimal (bewiesen)</translation>
   </message>
   <message>
    <source>other good axes</source>

@@ -50,7 +50,7 @@ def test_a_rack_machines_the_only_body_where_nothing_is_selected(desk, grooved):
     assert not form.faces.count() and not form.compute.isEnabled()
     form.rack.setCurrentIndex(form.rack.findText("general rack"))
     desk.pump(0.1)
-    assert form.facesTold.text() == "5 of Grooved" and form.faces.count() == 5 and form.compute.isEnabled()
+    assert form.facesTold.toolTip() == "5 of Grooved" and form.faces.count() == 5 and form.compute.isEnabled()
     assert form.rackTools.count() > 10
     assert desk.text(form.avoid, 0) == "no other body in the document", "what is machined is not to be avoided"
     desk.shot("89-general-rack")
@@ -69,11 +69,12 @@ def listed(desk, form):
 def test_with_a_rack_skins_are_listed_and_one_that_is_marked_is_lit(desk, skin):
     form = desk.start(skin)
     faces = form.faces.count()
-    assert faces > 2 and form.facesTold.text() == f"{faces} of {skin.Label}"
+    assert faces > 2 and form.facesTold.toolTip() == f"{faces} of {skin.Label}"
     form.rack.setCurrentIndex(form.rack.findText("general rack"))
-    desk.wait(lambda: "skins" in form.facesTold.text(), "skins are found")
+    desk.wait(lambda: "skins" in form.facesTold.toolTip(), "skins are found")
     rows = listed(desk, form)
-    assert form.facesTold.text().startswith(f"skins: {len(rows)} of {faces} faces, {skin.Label}") and len(rows) < faces
+    told = form.facesTold.toolTip()
+    assert told.startswith(f"skins: {len(rows)} of {faces} faces, {skin.Label}") and len(rows) < faces
     assert " more, " in rows[0]
     row = form.faces.visualRect(form.faces.model().index(0, 0))
     desk.click(form.faces.viewport(), row.center())
@@ -86,7 +87,7 @@ def test_with_a_rack_skins_are_listed_and_one_that_is_marked_is_lit(desk, skin):
     desk.press(form.removeFaces)
     assert form.faces.count() == faces - len(chosen.SubElementNames), "the rest is no whole part: its faces are alone"
     form.rack.setCurrentIndex(0)
-    assert "skins" not in form.facesTold.text()
+    assert "skins" not in form.facesTold.toolTip()
 
 
 def test_tiny_skins_are_not_listed_but_machined(desk, skin):
@@ -151,18 +152,18 @@ def test_faces_that_cannot_be_seen_are_listed_alone_or_left_out(desk, camera):
 def test_what_is_computed_is_lit_in_the_view(desk, grooved, form):
     panel = desk.opened[-1]()
     thing, name = grooved
-    panel.numbered = {2: (thing, name), 3: (thing, "Face3")}
+    panel.choice._numbered = {2: (thing, name), 3: (thing, "Face3")}
     panel.fields.faces.show_skins([((thing, name), (thing, "Face3"))])
-    panel._light("Ball D6: division by reach: face 3+2a (1 of 5): search for the axis", 0.1)
+    panel.choice.light("Ball D6: division by reach: face 3+2a (1 of 5): search for the axis")
     chosen, = desk.gui.Selection.getSelectionEx()
     assert chosen.Object == thing and set(chosen.SubElementNames) == {name, "Face3"}
     assert panel.fields.faces.faces == ((thing, name),), "a plane that continues the skin is not chosen for that"
-    panel._light("Ball D6: checking", 0.2)
+    panel.choice.light("Ball D6: checking")
     assert desk.gui.Selection.getSelectionEx()
 
 
 def test_a_rack_is_chosen_without_typing_a_tool(desk, form):
-    assert form.rack.currentText() == "my-rack.toml" and form.facesTold.text() == "1 of Grooved"
+    assert form.rack.currentText() == "my-rack.toml" and form.facesTold.toolTip() == "1 of Grooved"
     assert form.compute.isEnabled()
     for name in ("strategy", "orientations", "compare"):
         assert not getattr(form, name).isEnabled(), name

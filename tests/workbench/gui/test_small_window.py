@@ -41,6 +41,16 @@ def test_what_is_asked_for_and_compute_are_in_sight_together(desk, wavy, resize,
     desk.shot(f"95-{size[0]}-job")
 
 
+def test_a_part_with_a_long_name_is_told_as_far_as_there_is_room(desk, wavy, resize):
+    wavy[0].Label = "the name of a product that nobody shortened"
+    form = desk.start(*wavy)
+    told, whole = form.facesTold.text(), form.facesTold.toolTip()
+    assert whole == f"1 of {wavy[0].Label}" and told.startswith("1 of the name") and told.endswith("\u2026")
+    assert form.facesTold.fontMetrics().horizontalAdvance(told) <= form.facesTold.width()
+    resize(1400, 900)
+    assert len(form.facesTold.text()) >= len(told)
+
+
 @pytest.mark.parametrize("size", WINDOWS)
 def test_compute_and_the_headline_stay_whatever_is_scrolled(desk, form, resize, remembered, size):
     resize(*size)

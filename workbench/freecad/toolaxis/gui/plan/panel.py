@@ -1,23 +1,20 @@
 """The task panel of Plan Orientations: fields, Compute, the map, and OK as one undo step."""
 
-import re
 from contextlib import suppress
 from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis.document.cam_probe import speeds
 from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_operation
 from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
 from freecad.toolaxis.document.plan_account import account_from
-from freecad.toolaxis.document.read_shapes import faces_by_number, titles_of
+from freecad.toolaxis.document.read_shapes import titles_of
 from freecad.toolaxis.gui.axis_map.raster import axis_picture, picture_of
 from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.account import headline
-from freecad.toolaxis.gui.plan.camera import camera_of
-from freecad.toolaxis.gui.plan.face_list import ALL
+from freecad.toolaxis.gui.plan.face_choice import FaceChoice
 from freecad.toolaxis.gui.plan.form import PlanForm
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.move_origin import move_origin
@@ -27,9 +24,9 @@ from freecad.toolaxis.gui.plan.player import PlanPlayer
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
 from freecad.toolaxis.gui.plan.result_tab import AxisView
-from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces, tools_in
+from freecad.toolaxis.gui.plan.selection import selected_faces
 from freecad.toolaxis.gui.plan.setup_preview import SetupPreview
-from freecad.toolaxis.gui.plan.skin_search import SkinSearch
+from freecad.toolaxis.gui.plan.tool_offer import ToolOffer
 from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.progress_line import ProgressLine
@@ -41,20 +38,15 @@ from freecad.toolaxis.services.macros import again_lines, plan_line, record
 from freecad.toolaxis.services.messages import stale_text
 from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
-from freecad.toolaxis.services.sight import hidden_faces
-from freecad.toolaxis.services.tools import cutter_of
 from freecad.toolaxis.services.write_results import apply
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
 
-_TYPED = 0
 #: Tabs that scroll, each for itself, below what is always in sight.  The layout has all of it in a splitter with one
 #: side: FreeCAD gives a panel whose height depends on its width, as that of a label of several lines does, all the
 #: height it would like, and scrolls it as a whole; a splitter tells no such thing.
 _PAGES = ("jobTab", "setupTab", "toolTab", "advancedTab", "resultTab")
-#: What a stage of the computation says of the face that it is about.
-_FACE = re.compile(r"\b[Ff]ace (\d+)")
 #: Axes that make a map worth showing.
 _ENOUGH = 40
 
@@ -81,7 +73,8 @@ class PlanPanel(Panel):
         self.view = AxisView(self.form, self.preview)
         self.player = PlanPlayer(document, self.form, self.preview)
         self.remedies = RemedyRow(self.form)
-        self.skins, self.numbered, self.lit = SkinSearch(self.form, self.fields.faces), {}, None
+        self.choice = FaceChoice(document, self.form, self.fields)
+        self.tools = ToolOffer(document, self.form, self.fields)
         self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed, self.refusal = None, ""
         self.outrun = False
@@ -131,9 +124,6 @@ class PlanPanel(Panel):
         faces, problems = selected_faces(self.document)
         if inputs is None:
             inputs = defaults(self.document, faces)
-        self.tools = tools_in(self.document)
-        self.form.tool.addItem(translate("ToolAxis", "typed in below"))
-        self.form.tool.addItems([name for name, _ in self.tools])
         text = getattr(self.operation, "Account", "")
         self.standing = account_from(text)
         self.view.show_account(self.standing)
@@ -150,13 +140,9 @@ class PlanPanel(Panel):
     def _connect(self):
         form = self.form
         self.fields.on_change(self._edited)
-        self.fields.racks.on_change(self._rack_chosen)
+        self.choice.connect_widgets()
         self.fields.setup.on_change(self._setup_edited)
-        form.addFaces.clicked.connect(self._add_faces)
-        form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
-        form.facesFilter.textChanged.connect(self.fields.faces.show_matching)
-        form.facesSeen.activated.connect(self._list_seen)
-        form.faces.itemSelectionChanged.connect(self._point_out)
+        self.choice.added.connect(self._faces_added)
         form.tool.activated.connect(self._tool_chosen)
         form.compute.clicked.connect(self.compute)
         form.stop.clicked.connect(self.stop)
@@ -166,53 +152,15 @@ class PlanPanel(Panel):
         self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
         self.remedies.chosen.connect(self.compute_again)
-        self.skins.found.connect(self._tell_faces)
 
-    def _add_faces(self):
-        faces, problems = selected_faces(self.document)
-        nothing = translate("ToolAxis", "Nothing is selected: select faces or a body in the 3D view first")
-        self.problem = "; ".join(problems) or ("" if faces else nothing)
-        self.fields.faces.add(faces)
-        self._offer_bodies()
+    def _faces_added(self, problem):
+        self.problem = problem
         self._changed()
-
-    def _list_seen(self, kind):
-        """List all faces, or those that can be seen as the view stands, or the others."""
-        listed = self.fields.faces.listed if kind != ALL else ()
-        beside = bodies_in(self.document, [thing for thing, _ in listed])
-        self.fields.faces.show_kind(kind, hidden_faces(listed, beside, camera_of(self.document)) if listed else ())
-
-    def _offer_bodies(self):
-        """Offer all bodies to be avoided but those that are machined."""
-        parts = [thing for thing, _ in self.fields.faces.faces]
-        self.fields.avoid.offer(bodies_in(self.document, parts), self.fields.avoid.ticked)
-
-    def _rack_chosen(self):
-        """A rack machines whole parts: where no face was chosen, all of the only body is."""
-        if self.fields.racks.chosen and not self.fields.faces.faces:
-            self.fields.faces.add(faces_of_only_body(self.document))
-            self._offer_bodies()
-
-    def _point_out(self):
-        """Select in the 3D view what is marked in the list."""
-        self._select(self.fields.faces.marked)
-
-    def _select(self, faces):
-        """Select faces in the 3D view, and nothing else."""
-        FreeCADGui.Selection.clearSelection(self.document.Name)
-        for thing, name in faces:
-            FreeCADGui.Selection.addSelection(self.document.Name, thing.Name, name)
 
     def _tool_chosen(self, index):
-        if index == _TYPED:
-            return
-        try:
-            found = self.tools[index - 1][1]
-            self.fields.take_tool(cutter_of(found), (None, None) if isinstance(found, str) else speeds(found))
-        except Exception as reason:  # a tool of a shape that there is no cutter for: said, nothing changed
-            self.form.tool.setCurrentIndex(_TYPED)
-            self.problem = sentence(reason)
-        self._changed()
+        if index:  # else it is typed in
+            self.problem = self.tools.take(index) or self.problem
+            self._changed()
 
     def _setup_edited(self):
         """Origin and stock change no axis: a plan that is there goes along."""
@@ -232,7 +180,7 @@ class PlanPanel(Panel):
         self.refusal = self.fields.refusal()
         if self.work is None:
             self._look_at_fields()
-        self._tell_faces()
+        self.choice.tell()
         self.show_state()
 
     def _look_at_fields(self):
@@ -243,13 +191,7 @@ class PlanPanel(Panel):
             return
         if self.fields.reason:
             self.remedies.show_advice(self.fields.reason, inputs)
-        self.skins.seek(None if self.refusal else inputs)
-
-    def _tell_faces(self):
-        """Say how many faces or skins are machined, and of what."""
-        told = self.fields.faces.summary()
-        self.form.facesTold.setText(told)
-        self.form.facesTold.setToolTip(told)
+        self.choice.skins.seek(None if self.refusal else inputs)
 
     def show_state(self):
         """Enable what can be done now, and say how things stand."""
@@ -315,8 +257,8 @@ class PlanPanel(Panel):
             self.remedies.show_advice(one_line(reason), inputs)
             self.show_state()
             return
-        titles, self.numbered, self.lit = titles_of(inputs), faces_by_number(inputs), None
-        self.skins.pause()
+        titles = titles_of(inputs)
+        self.choice.begin(inputs)
         self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
         known = {} if inputs.rack else titles
         self.work.interim.connect(lambda found: self._growing(*found, known))
@@ -414,12 +356,7 @@ class PlanPanel(Panel):
             self.view.show_growing(picture, face, titles)
 
     def _light(self, stage, _):
-        """Light up in the 3D view, and mark in the list, what is being computed."""
-        number = _FACE.search(stage)
-        face = None if number is None else self.numbered.get(int(number.group(1)))
-        if face is not None and face != self.lit:
-            self.lit = face
-            self._select(self.fields.faces.mark(face))
+        self.choice.light(stage)
 
     def _computed(self, inputs, plan, pictures, titles):
         self.work = None
@@ -427,11 +364,7 @@ class PlanPanel(Panel):
             self._not_computed("")
             return
         self.computed = None if self.outrun else inputs
-        self.form.faces.clearSelection()
-        FreeCADGui.Selection.clearSelection(self.document.Name)  # its colour would lie over what is shown
-        if inputs.rack and plan.outcome != "cancelled":
-            skins = dict.fromkeys(op.face.numbers for op in plan.operations if len(op.face.numbers) > 1)
-            self.skins.show(inputs, [tuple(self.numbered[n] for n in skin) for skin in skins])
+        self.choice.show_planned(inputs, plan)
         self.view.show(plan, pictures, titles, AxisLocks(inputs, plan))
         self.remedies.show(plan, inputs)
         self.form.tabs.setCurrentWidget(self.form.resultTab)
@@ -461,7 +394,7 @@ class PlanPanel(Panel):
         """A part is about to be deleted: take its faces off the list, and stop what is computed for them."""
         if self.operation is not None and self.operation.Name == name:
             self.operation = None  # what is planned again becomes a new one
-        self._forget_tool(name)
+        self.tools.forget(name)
         if self.fields.faces.remove_object(name):
             self.problem = translate("ToolAxis", "The part was deleted: select other faces")
         elif self.fields.avoid.remove_object(name):
@@ -472,13 +405,6 @@ class PlanPanel(Panel):
         self.computed = None
         self.view.clear()
         self._changed()
-
-    def _forget_tool(self, name):
-        """Take a tool of the document that is about to be deleted off the choice."""
-        for k, (_, thing) in reversed(list(enumerate(self.tools))):
-            if getattr(thing, "Name", None) == name:  # a name of the library of tools has none
-                del self.tools[k]
-                self.form.tool.removeItem(k + 1)
 
     def object_changed(self, name):
         """A part, a body to avoid, or what carries one has changed: what was computed for it no longer counts."""
@@ -496,7 +422,7 @@ class PlanPanel(Panel):
         self.setup_preview.forget()
 
     def _let_go(self):
-        self.skins.leave()
+        self.choice.skins.leave()
         self.player.close()
         self.view.leave()
         self.preview.clear()
