@@ -53,8 +53,10 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     stretch = (chart.bounds[1] - chart.bounds[0]) / (1 + max(map(len, surface.breaks)))
     ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
     owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
-    low, high = ends[:, :-1].ravel(), ends[:, 1:].ravel()
-    done_owner, done_low = [np.arange(len(pieces))], [pieces[:, 1]]
+    low = ends[:, :-1].ravel()
+    high = ends[:, 1:].ravel()
+    done_owner = [np.arange(len(pieces))]
+    done_low = [pieces[:, 1]]
     for _ in range(_ROUNDS):
         if not len(owner):
             break
@@ -68,7 +70,8 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
         owner, low, high = _divide(owner[~fine], low[~fine], high[~fine], np.clip(parts[~fine], 2, 64).astype(int))
     done_owner.append(owner)
     done_low.append(low)
-    piece, along = np.concatenate(done_owner), np.concatenate(done_low)
+    piece = np.concatenate(done_owner)
+    along = np.concatenate(done_low)
     order = np.lexsort((along, piece))
     return piece[order], along[order]
 
@@ -114,9 +117,12 @@ def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array, 
     """How far straight motions of the tip from begin to end, at low and high, stay above the pass at most, (m,) mm."""
     along = (low[:, None] + (high - low)[:, None] * _QUARTERS).ravel()
     contact, _, normal = tip_points(chart, cut, along, np.repeat(step, len(_QUARTERS)))
-    first, last = (np.broadcast_to(cut.axes(chart.face, chart.uv(place, step)), begin.shape) for place in (low, high))
-    touching = tips(contact, normal, unit(_between(first, last)), cut.tool, cut.allowance)
-    return np.asarray(((_between(begin, end) - touching) * normal).sum(axis=1).reshape(len(low), -1).max(axis=1))
+    axis_before, axis_after = (np.broadcast_to(cut.axes(chart.face, chart.uv(place, step)), begin.shape)
+                               for place in (low, high))
+    axes = unit(_between(axis_before, axis_after))
+    touching = tips(contact, normal, axes, cut.tool, cut.allowance)
+    above = ((_between(begin, end) - touching) * normal).sum(axis=1)
+    return np.asarray(above.reshape(len(low), -1).max(axis=1))
 
 
 def _between(begin: Array, end: Array) -> Array:

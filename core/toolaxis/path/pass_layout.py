@@ -104,22 +104,29 @@ def _stretches_on_material(chart: Chart, spacing: Spacing, material: Array) -> I
     """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
     along = spacing.lines.along
     halves = np.array([spacing.lines.spread_widths(h) for h in spacing.halves]).reshape(-1, len(along), 2)
-    low, high = spacing.steps[:, None] - halves[..., 0], spacing.steps[:, None] + halves[..., 1]
+    low = spacing.steps[:, None] - halves[..., 0]
+    high = spacing.steps[:, None] + halves[..., 1]
     need = _overlaps(material[None], low, high)
+    # Between neighbouring columns of which one holds material: from the inside and from the outside towards its end.
     line, i = np.nonzero(need[:, 1:] != need[:, :-1])
-    a, b = along[np.where(need[line, i], i, i + 1)], along[np.where(need[line, i], i + 1, i)]
+    inside = along[np.where(need[line, i], i, i + 1)]
+    outside = along[np.where(need[line, i], i + 1, i)]
     if len(line):
         for _ in range(_BISECTIONS):
-            middle = (a + b) / 2
+            middle = (inside + outside) / 2
             share = (middle - along[i]) / (along[i + 1] - along[i])
             band = [side[line, i] * (1 - share) + side[line, i + 1] * share for side in (low, high)]
             full = _overlaps(table(columns(chart, middle), len(middle)), *band)
-            a, b = np.where(full, middle, a), np.where(full, b, middle)
-    first, last = np.flatnonzero(need[:, 0]), np.flatnonzero(need[:, -1])
-    ends = np.concatenate([np.column_stack([line, b]), np.column_stack([first, np.full(len(first), along[0])]),
-                           np.column_stack([last, np.full(len(last), along[-1])])])
-    ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-    return Intervals(ends[::2, 0].astype(np.intp), ends[::2, 1], ends[1::2, 1])
+            inside = np.where(full, middle, inside)
+            outside = np.where(full, outside, middle)
+    from_start = np.flatnonzero(need[:, 0])
+    to_end = np.flatnonzero(need[:, -1])
+    lines_of_ends = np.concatenate([line, from_start, to_end])
+    places = np.concatenate([outside, np.full(len(from_start), along[0]), np.full(len(to_end), along[-1])])
+    order = np.lexsort((places, lines_of_ends))
+    line = lines_of_ends[order]
+    place = places[order]
+    return Intervals(line[::2], place[::2], place[1::2])
 
 
 def _extend_pieces(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
@@ -181,14 +188,16 @@ def places_between(placed: Layout) -> Array:
     ----------
     placed : Layout
     """
-    spacing, chart = placed.spacing, placed.chart
+    spacing = placed.spacing
+    chart = placed.chart
     if len(spacing.steps) < 2:
         return np.empty((0, 2))
     measured = spacing.lines.measured
     along = np.linspace(measured[0], measured[-1], _count_along(placed))
     before = np.array([np.interp(along, measured, half) for half in spacing.halves[:-1, :, 1]])
     behind = np.array([np.interp(along, measured, half) for half in spacing.halves[1:, :, 0]])
-    first, last = spacing.steps[:-1, None], spacing.steps[1:, None]
+    first = spacing.steps[:-1, None]
+    last = spacing.steps[1:, None]
     meeting = np.clip(np.nan_to_num((first + before + last - behind) / 2), first, last)
     steps = [meeting, *(np.broadcast_to(first + share * (last - first), meeting.shape) for share in _BETWEEN)]
     places = [chart.uv(np.tile(along, len(meeting)), one.ravel()) for one in steps]
@@ -203,7 +212,8 @@ def _count_along(placed: Layout) -> int:
     strip = 2 * np.sqrt(2 * (cut.tool.corner_radius or cut.tool.radius) * cut.scallop)
     most = _MOST_ASKED // ((1 + len(_BETWEEN)) * len(placed.spacing.steps))
     least = 2 * len(placed.spacing.lines.measured) - 1
-    return max(least, min(most, int(np.ceil(extents(placed.chart)[0] / strip))))
+    length, _ = extents(placed.chart)
+    return max(least, min(most, int(np.ceil(length / strip))))
 
 
 def pass_length(placed: Layout) -> float:
@@ -219,4 +229,5 @@ def pass_length(placed: Layout) -> float:
     share = np.linspace(0.0, 1.0, _ALONG)
     along = low[:, None] + share * (high - low)[:, None]
     _, tips, _ = tip_points(placed.chart, placed.cut, along.ravel(), np.repeat(steps, _ALONG))
-    return float(np.linalg.norm(np.diff(tips.reshape(-1, _ALONG, 3), axis=1), axis=2).sum())
+    chords = np.diff(tips.reshape(-1, _ALONG, 3), axis=1)
+    return float(np.linalg.norm(chords, axis=2).sum())

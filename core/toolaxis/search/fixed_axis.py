@@ -103,8 +103,7 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     scallop : float
         Scallop height, mm.
     machine : Machine, Mounting, AxisLimits or str, optional
-        A machine, its name or file, one with the part on its table (`toolaxis.machine.setup`), or limits of the
-        axis and their short form.
+        A machine, its name or file, one with the part on its table, or limits of the axis, also in their short form.
     obstacles : Part, Face or sequence of Face, optional
         What the tool must keep away from besides the part.
     method : str
@@ -127,9 +126,8 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     direction : str
         "zigzag", "climb" or "conventional": the passes that are proven.
     passes : str
-        "iso": along a parameter of the face; "planes": along parallel planes that contain the tool axis; "scallop":
-        along the levels of a field that keeps them as far apart as their strips are wide; "auto": the shorter of "iso"
-        and "scallop".
+        "iso": along a parameter; "planes": along parallel planes that contain the tool axis; "scallop": along levels of
+        a field that keeps them as far apart as their strips are wide; "auto": the shorter of "iso" and "scallop".
     starts : (k, 3) array_like, optional
         Axes that are worth a look before others, such as a division's; for the method "sphere".
     feeds : Feeds, optional
@@ -137,15 +135,14 @@ def best_axis(face: Face, tool: Tool, scallop: float, machine: MachineLike | Non
     greatest_step_over : float
         Greatest distance of neighbouring passes on the face, mm, whatever the scallop height allows.
     lead : float
-        Radius of the arcs on which the tool comes to passes and leaves them where these are proven free, mm; 0 for
-        none.
+        Radius of the arcs at the ends of passes, where these are proven free, mm; 0 for none.
     progress : Progress
 
     Returns
     -------
     Orientation
-        "feasible" with axis, passes made and what was proven of them; "infeasible" only where it is proven that no
-        axis exists; "not_found" where none was found; "cancelled" with what is known so far.
+        "feasible" with axis, passes made and what was proven; "infeasible" where it is proven that there is none;
+        "not_found" where none was found; "cancelled" with what is known so far.
 
     Raises
     ------

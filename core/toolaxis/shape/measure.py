@@ -59,8 +59,8 @@ def area(face: "Face") -> float:
 def _panels(face: "Face") -> tuple[Array, Array]:
     """Lines of constant u and of constant v between which the area is integrated."""
     u0, u1, v0, v1 = face.bounds
-    breaks = face.surface.breaks
-    return _cuts(breaks[0], np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks[1], face.outline[:1])
+    breaks_u, breaks_v = face.surface.breaks
+    return _cuts(breaks_u, np.linspace(u0, u1, PIECES + 1)), _breaks(v0, v1, breaks_v, face.outline[:1])
 
 
 def _even_density(surface: "NurbsSurface") -> float | None:
@@ -68,10 +68,12 @@ def _even_density(surface: "NurbsSurface") -> float | None:
     if surface.control.shape[:2] != (2, 2) or np.ptp(surface.control[..., 3]) > 0:
         return None
     corners = surface.control[..., :3] / surface.control[..., 3:]
-    along, across = corners[1, 0] - corners[0, 0], corners[0, 1] - corners[0, 0]
+    along = corners[1, 0] - corners[0, 0]
+    across = corners[0, 1] - corners[0, 0]
     twist = corners[1, 1] - corners[0, 0] - along - across
     size = float(np.linalg.norm(np.cross(along, across)))
-    if np.abs(twist).max() * max(np.abs(along).max(), np.abs(across).max()) > _TWISTED * size:
+    longest = max(np.abs(along).max(), np.abs(across).max())
+    if np.abs(twist).max() * longest > _TWISTED * size:
         return None
     (u0, u1), (v0, v1) = surface.domain
     return size / ((u1 - u0) * (v1 - v0))
@@ -80,23 +82,28 @@ def _even_density(surface: "NurbsSurface") -> float | None:
 def _area_inside(face: "Face", loop: Array, cuts: tuple[Array, Array]) -> float:
     """Area inside a closed polygon, positive where it runs anticlockwise in the parameters."""
     start, end = _cut_polygon(loop, cuts)
+    cuts_u, cuts_v = cuts
     moved = start[:, 1] != end[:, 1]
-    start, end = start[moved], end[moved]
-    short = np.abs(end - start)[:, 1] < (cuts[1][-1] - cuts[1][0]) / 256
+    start = start[moved]
+    end = end[moved]
+    short = np.abs(end - start)[:, 1] < (cuts_v[-1] - cuts_v[0]) / 256
     total = 0.0
     for rows, points in ((short, 2), (~short, POINTS)):
         nodes, weights = np.polynomial.legendre.leggauss(points)
-        a, b = start[rows, None], end[rows, None]
+        a = start[rows, None]
+        b = end[rows, None]
         uv = (a + b) / 2 + (b - a) / 2 * nodes[:, None]
         height = (b - a)[..., 1] / 2 * weights
-        total += float((_up_to(face, uv.reshape(-1, 2), cuts[0]).reshape(height.shape) * height).sum())
+        beside = _up_to(face, uv.reshape(-1, 2), cuts_u).reshape(height.shape)
+        total += float((beside * height).sum())
     return total
 
 
 def _cut_polygon(loop: Array, cuts: tuple[Array, Array]) -> tuple[Array, Array]:
     """Starts and ends of the parts of a closed polygon between lines of constant u and of constant v."""
     way = np.roll(loop, -1, axis=0) - loop
-    edges, shares = [np.arange(len(loop))], [np.zeros(len(loop))]
+    edges = [np.arange(len(loop))]
+    shares = [np.zeros(len(loop))]
     for axis in (0, 1):
         with np.errstate(divide="ignore", invalid="ignore"):
             share = (cuts[axis] - loop[:, axis, None]) / way[:, axis, None]
@@ -117,11 +124,13 @@ def _up_to(face: "Face", uv: Array, cuts: Array) -> Array:
     start = np.where(cuts[:-1] >= middle, cuts[:-1], cuts[1:])
     row, piece = np.nonzero(near != start)
     half = (near[row, piece] - start[piece]) / 2
-    u = start[piece] + half
-    d = face.evaluate(np.stack([u[:, None] + half[:, None] * nodes,
-                                np.broadcast_to(uv[row, 1:], (len(row), POINTS))], axis=-1).reshape(-1, 2))
-    size = lengths(np.cross(d.su, d.sv)).reshape(len(row), POINTS)
-    return np.asarray(np.bincount(row, weights=(size * weights).sum(axis=1) * half, minlength=len(uv)))
+    middles = start[piece] + half
+    u = middles[:, None] + half[:, None] * nodes
+    v = np.broadcast_to(uv[row, 1:], u.shape)
+    d = face.evaluate(np.stack([u, v], axis=-1).reshape(-1, 2))
+    size = lengths(np.cross(d.su, d.sv)).reshape(u.shape)
+    areas = (size * weights).sum(axis=1) * half
+    return np.asarray(np.bincount(row, weights=areas, minlength=len(uv)))
 
 
 def _cuts(knots: Array, extra: Array) -> Array:
@@ -132,13 +141,17 @@ def _cuts(knots: Array, extra: Array) -> Array:
 
 def _breaks(v0: float, v1: float, knots: Array, loops: tuple[Array, ...]) -> Array:
     """Ends of the panels in v: at knots, at corners unless there are many, and closer towards where a loop ends."""
-    ends = np.unique(np.clip([v for loop in loops for v in (loop[:, 1].min(), loop[:, 1].max())] + [v0, v1], v0, v1))
+    heights = [loop[:, 1] for loop in loops]
+    ranges = [v for height in heights for v in (height.min(), height.max())]
+    ends = np.unique(np.clip([*ranges, v0, v1], v0, v1))
     parts = []
     for a, b in pairwise(ends.tolist()):
         count = max(4, round(PANELS * (b - a) / (v1 - v0)))
         parts.append(0.5 * (a + b) - 0.5 * (b - a) * np.cos(np.linspace(0.0, np.pi, count + 1)))
-    corners = np.concatenate([loop[:, 1] for loop in loops])
-    return _cuts(knots, np.unique(np.clip(np.concatenate([*parts, corners if len(corners) <= 64 else []]), v0, v1)))
+    corners = np.concatenate(heights)
+    if len(corners) <= 64:
+        parts.append(corners)
+    return _cuts(knots, np.unique(np.clip(np.concatenate(parts), v0, v1)))
 
 
 def mean_width(face: "Face") -> float:
@@ -149,7 +162,8 @@ def mean_width(face: "Face") -> float:
     face : Face
     """
     u0, u1, v0, v1 = face.bounds
-    step, length = ((u1 - u0) / SAMPLES, (v1 - v0) / SAMPLES), 0.0
+    step = ((u1 - u0) / SAMPLES, (v1 - v0) / SAMPLES)
+    length = 0.0
     for loop in face.outline:
         points = face.evaluate(walk(loop, stations(loop, step))).point
         length += float(np.linalg.norm(points - np.roll(points, -1, axis=0), axis=1).sum())
@@ -165,8 +179,8 @@ def box(face: "Face") -> Array:
     """
     sign = np.repeat([-1.0, 1.0], 3)
     axis = np.tile(np.arange(3), 2)
-    best = np.max([_inner_extremes(face, axis, sign), *(_border_extremes(face, loop, axis, sign)
-                                                        for loop in face.outline)], axis=0)
+    found = [_border_extremes(face, loop, axis, sign) for loop in face.outline]
+    best = np.max([_inner_extremes(face, axis, sign), *found], axis=0)
     return np.stack([-best[:3], best[3:]])
 
 
@@ -176,7 +190,8 @@ def _inner_extremes(face: "Face", axis: NDArray[np.int64], sign: Array) -> Array
     if not len(grid):
         return np.full(len(axis), -np.inf)
     values = face.evaluate(grid).point[:, axis] * sign
-    uv, best = grid[values.argmax(axis=0)], values.max(axis=0)
+    uv = grid[values.argmax(axis=0)]
+    best = values.max(axis=0)
     row = np.arange(len(axis))
     for _ in range(5):
         d = face.evaluate(uv)
@@ -187,19 +202,24 @@ def _inner_extremes(face: "Face", axis: NDArray[np.int64], sign: Array) -> Array
         trial = uv - step / np.where(sound, determinant, 1.0)[:, None]
         found = face.evaluate(trial).point[row, axis] * sign
         better = sound & (found > best) & face.contains(trial)
-        uv, best = np.where(better[:, None], trial, uv), np.where(better, found, best)
+        uv = np.where(better[:, None], trial, uv)
+        best = np.where(better, found, best)
     return np.asarray(best)
 
 
 def _border_extremes(face: "Face", loop: Array, axis: NDArray[np.int64], sign: Array) -> Array:
+    """Greatest signed coordinates along a loop, each between the neighbours of the greatest sample."""
     u0, u1, v0, v1 = face.bounds
     position = stations(loop, ((u1 - u0) / SAMPLES, (v1 - v0) / SAMPLES))
     values = face.evaluate(walk(loop, position)).point[:, axis] * sign
     best = values.argmax(axis=0)
     before = np.where(best > 0, position[best - 1], position[-1] - len(loop))
     behind = np.append(position, len(loop))[best + 1]
-    low, high = np.concatenate([before, position[best]]), np.concatenate([position[best], behind])
-    row, towards, opposite = np.arange(len(low)), np.tile(axis, 2), -np.tile(sign, 2)
+    low = np.concatenate([before, position[best]])
+    high = np.concatenate([position[best], behind])
+    row = np.arange(len(low))
+    towards = np.tile(axis, 2)
+    opposite = -np.tile(sign, 2)
 
     def depth(at: Array) -> Array:
         return np.asarray(face.evaluate(walk(loop, at)).point[row, towards] * opposite)

@@ -80,15 +80,18 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
     """
     foot, normal, depth = rays
     reach = max(NEAR, TIMES * allowed)
-    told, near = depth.copy(), np.zeros(len(foot), dtype=bool)
-    beside = [(other, _may_lie_within(reach, other, foot)) for other in around[0]]
+    told = depth.copy()
+    near = np.zeros(len(foot), dtype=bool)
+    behind, going_on = around
+    beside = [(other, _may_lie_within(reach, other, foot)) for other in behind]
     for first in range(0, len(foot), _AT_ONCE):
         rows = np.arange(first, min(first + _AT_ONCE, len(foot)))
-        ends = [*(_behind(other, (foot[rows], normal[rows], depth[rows]), close[rows], reach)
-                  for other, close in beside),
-                _open(face, (foot[rows], normal[rows]), (*around[0], *around[1]), reach)]
+        some_rays = (foot[rows], normal[rows], depth[rows])
+        ends = [_behind(other, some_rays, close[rows], reach) for other, close in beside]
+        ends.append(_open(face, (foot[rows], normal[rows]), (*behind, *going_on), reach))
         here = np.any([end.there for end in ends], axis=0)
-        near[rows], rows = here, rows[here]
+        near[rows] = here
+        rows = rows[here]
         if len(rows):
             some = [End(end.there[here], end.point[:, here], end.outwards[:, here]) for end in ends if end.there.any()]
             feet, directions = _inwards(face, (foot[rows], normal[rows]), some, reach)
@@ -100,7 +103,7 @@ def depth_at_edges(face: Face, rays: tuple[Array, Array, Array], around: tuple[t
             over = (found > allowed).any(axis=1)
             if over.any():
                 deep = feet[over].reshape(-1, 3), directions[over].reshape(-1, 3)
-                placed = _place_on_part(deep, (face, *around[0]))
+                placed = _place_on_part(deep, (face, *behind))
                 limit = np.maximum(middle[over], _LEAST).reshape(-1)
                 found[over] = _follow_to_other_places(placed, limit, cut, others).reshape(over.sum(), -1)
             told[rows] = found.max(axis=1)
@@ -114,17 +117,22 @@ def _place_on_part(rays: tuple[Array, Array], faces: tuple[Face, ...]) -> tuple[
     The way inwards is told by the face's bend at its beginning: where it bends more on, or goes over into another face,
     feet would stand in the air or within the part.
     """
-    foot, normal = rays[0].copy(), rays[1].copy()
+    given, directions = rays
+    foot = given.copy()
+    normal = directions.copy()
     away = np.full(len(foot), np.inf)
     for face in faces:
-        beyond = np.maximum(np.maximum(face.box[0] - rays[0], rays[0] - face.box[1]), 0.0)
+        low, high = face.box
+        beyond = np.maximum(np.maximum(low - given, given - high), 0.0)
         rows = np.flatnonzero(np.linalg.norm(beyond, axis=1) < away)
         if not len(rows):
             continue
-        found = nearest(face, rays[0][rows])
+        found = nearest(face, given[rows])
         closer = found.distance < away[rows]
-        rows, uv = rows[closer], found.uv[closer]
-        away[rows], foot[rows], normal[rows] = found.distance[closer], found.point[closer], face.normal(uv)
+        rows = rows[closer]
+        away[rows] = found.distance[closer]
+        foot[rows] = found.point[closer]
+        normal[rows] = face.normal(found.uv[closer])
     return foot, normal, away
 
 
@@ -167,7 +175,9 @@ def _behind(other: Face, rays: tuple[Array, Array, Array], close: NDArray[np.boo
     outwards = other.normal(found.uv)
     away = normal[rows] - dot(normal[rows], outwards)[:, None] * outwards
     steep = (np.linalg.norm(away, axis=1) > 1e-3) & (found.distance < reach)
-    rows, point, down = rows[steep], found.point[steep], -unit(away[steep])
+    rows = rows[steep]
+    point = found.point[steep]
+    down = -unit(away[steep])
     if not len(rows):
         return end
     convex = _goes_down(other, point, down)
@@ -175,8 +185,9 @@ def _behind(other: Face, rays: tuple[Array, Array, Array], close: NDArray[np.boo
     if len(rows):
         end.there[rows] = True
         at = NearestPoints(*(values[steep][convex] for values in found))
-        end.point[:, rows], end.outwards[:, rows] = _stations(other, at, (foot[rows], normal[rows], depth[rows]),
-                                                                 reach)
+        points, ways = _stations(other, at, (foot[rows], normal[rows], depth[rows]), reach)
+        end.point[:, rows] = points
+        end.outwards[:, rows] = ways
     return end
 
 
@@ -194,17 +205,21 @@ def _stations(other: Face, at: NearestPoints, rays: tuple[Array, Array, Array], 
     """Points on a face and its normals there, nearest to places down rays: their feet first, (stations, k, 3) each."""
     foot, normal, depth = rays
     outwards = other.normal(at.uv)
-    points, ways = np.tile(at.point, (len(_STATIONS), 1, 1)), np.tile(outwards, (len(_STATIONS), 1, 1))
+    every = (len(_STATIONS), 1, 1)
+    points = np.tile(at.point, every)
+    ways = np.tile(outwards, every)
     # Rays from as far inwards as is looked at come nearer to the other face at this depth, were it plane.
     flat = dot(normal, outwards)
     lowest = 2.0 * reach * np.sqrt((1.0 + flat) / np.maximum(1.0 - flat, 1e-12))
     down = np.minimum(depth, lowest)[:, None] * normal
     last = nearest(other, foot - down)
-    points[-1], ways[-1] = last.point, other.normal(last.uv)
+    points[-1] = last.point
+    ways[-1] = other.normal(last.uv)
     bent = np.flatnonzero(np.linalg.norm(ways[-1] - outwards, axis=1) > _PLANE)
     for k, share in enumerate(_STATIONS[1:-1] if len(bent) else (), start=1):
         found = nearest(other, foot[bent] - share * down[bent])
-        points[k, bent], ways[k, bent] = found.point, other.normal(found.uv)
+        points[k, bent] = found.point
+        ways[k, bent] = other.normal(found.uv)
     return points, ways
 
 
@@ -222,14 +237,19 @@ def _open(face: Face, rays: tuple[Array, Array], others: tuple[Face, ...], reach
     uv, along = on_border(face, foot, lines, reach)
     point = face.evaluate(uv).point
     across = np.cross(along, face.normal(uv))
-    rows = np.flatnonzero((np.linalg.norm(point - foot, axis=1) < reach) & (np.linalg.norm(across, axis=1) > 0.0))
+    close = np.linalg.norm(point - foot, axis=1) < reach
+    known = np.linalg.norm(across, axis=1) > 0.0
+    rows = np.flatnonzero(close & known)
     if not len(rows):
         return end
     outwards = unit(across[rows])
     step = in_parameters(face, uv[rows], 0.1 * NEAR * outwards)
+    # 1 where the face lies ahead of the border, -1 where behind it, 0 where on both sides or on none.
     sides = face.contains(uv[rows] + step).astype(int) - face.contains(uv[rows] - step).astype(int)
     alone = (sides != 0) & ~_goes_on_beyond(point[rows], lines, others)
-    end.there[rows[alone]], end.point[:, rows], end.outwards[:, rows] = True, point[rows], -sides[:, None] * outwards
+    end.there[rows[alone]] = True
+    end.point[:, rows] = point[rows]
+    end.outwards[:, rows] = -sides[:, None] * outwards
     return end
 
 
@@ -239,17 +259,23 @@ def _goes_on_beyond(point: Array, lines: list[BorderLoop], others: tuple[Face, .
 
     found = np.zeros(len(point), dtype=bool)
     for other in others:
-        rows = np.flatnonzero(((point > other.box[0] - NEAR) & (point < other.box[1] + NEAR)).all(axis=1) & ~found)
+        low, high = other.box
+        in_box = ((point > low - NEAR) & (point < high + NEAR)).all(axis=1)
+        rows = np.flatnonzero(in_box & ~found)
         if len(rows):
             found[rows] = nearest(other, point[rows]).distance < NEAR
     for line in lines:
-        rows, tree = np.flatnonzero(~found), cKDTree(line.point)
+        rows = np.flatnonzero(~found)
+        tree = cKDTree(line.point)
+        whole = line.way[-1]
         for i, near in zip(rows, tree.query_ball_point(point[rows], NEAR + STEP), strict=True):
             if near:
-                at, whole = line.way[near], line.way[-1]
-                between = np.abs(at - line.way[tree.query(point[i])[1]])
+                # Points of the same loop that are near in space and far along it: both sides of a seam.
+                _, own = tree.query(point[i])
+                between = np.abs(line.way[near] - line.way[own])
+                along = np.minimum(between, whole - between)
                 straight = np.linalg.norm(line.point[near] - point[i], axis=1) + STEP
-                found[i] |= bool((np.minimum(between, whole - between) > 4.0 * straight).any())
+                found[i] |= bool((along > 4.0 * straight).any())
     return found
 
 
@@ -259,19 +285,24 @@ def _inwards(face: Face, rays: tuple[Array, Array], ends: list[End], reach: floa
     room = np.array([np.where(end.there, dot(end.point[0] - foot, end.outwards[0]), np.inf) for end in ends])
     # The nearest end counts most; in a corner all of them do, so that the way leads to where the part is thickest.
     weight = np.where(np.isfinite(room), np.maximum(reach - np.maximum(room, 0.0), 1e-3 * reach), 0.0)
-    outwards = np.einsum("ek,ekc->kc", weight, np.array([end.outwards[0] for end in ends]))
+    all_outwards = np.array([end.outwards[0] for end in ends])
+    outwards = np.einsum("ek,ekc->kc", weight, all_outwards)
     flat = outwards - dot(outwards, normal)[:, None] * normal
     sound = np.linalg.norm(flat, axis=1) > 1e-9 * weight.sum(axis=0)
-    nearest_one = np.array([end.outwards[0] for end in ends])[room.argmin(axis=0), np.arange(len(foot))]
+    nearest_one = all_outwards[room.argmin(axis=0), np.arange(len(foot))]
     flat = np.where(sound[:, None], flat, nearest_one - dot(nearest_one, normal)[:, None] * normal)
-    first, inwards = np.clip(room.min(axis=0), 0.0, reach), -unit(flat)
+    inwards = -unit(flat)
+    # Feet follow the face inwards by its bend at their beginning, and normals turn with them.
     uv = nearest(face, foot).uv
-    d, (du, dv) = face.evaluate(uv), in_parameters(face, uv, inwards).T[..., None]
-    bend = dot(d.suu * du**2 + 2 * d.suv * du * dv + d.svv * dv**2, normal)
+    d = face.evaluate(uv)
+    du, dv = in_parameters(face, uv, inwards).T[..., None]
+    bend = dot(d.suu * du**2 + 2 * d.suv * du * dv + d.svv * dv**2, normal)[:, None, None]
     count = int(np.ceil(np.log(reach / FIRST) / np.log(RATIO)))
-    way = np.maximum(FIRST * RATIO ** np.arange(count + 1) - first[:, None], 0.0)[..., None]
-    feet = foot[:, None] + way * inwards[:, None] + 0.5 * (bend[:, None, None] * way**2) * normal[:, None]
-    return feet, unit(normal[:, None] - bend[:, None, None] * way * inwards[:, None])
+    from_end = FIRST * RATIO ** np.arange(count + 1)
+    own = np.clip(room.min(axis=0), 0.0, reach)
+    way = np.maximum(from_end - own[:, None], 0.0)[..., None]
+    feet = foot[:, None] + way * inwards[:, None] + 0.5 * (bend * way**2) * normal[:, None]
+    return feet, unit(normal[:, None] - bend * way * inwards[:, None])
 
 
 def _middle(rays: tuple[Array, Array], ends: list[End]) -> Array:

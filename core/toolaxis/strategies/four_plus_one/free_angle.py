@@ -78,15 +78,21 @@ def widest(widths: Array, angles: Array, gates: SingularSides | None = None) -> 
     -----
     **Source**: [zhu2016] Sec. 5.4.2 takes the widest strip at every sample by itself; here the angles belong together.
     """
+    usable = widths > 0
     best = widths.max(axis=0)
     if not (best > 0).all():
         return None
     least = best.min(axis=0)
+    finite = np.where(np.isfinite(least), least, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        price = np.where(widths > 0, (np.where(np.isfinite(least), least, 0.0) / widths) ** _POWER, np.inf)
-    turn, usable = _Turns.between(angles), widths > 0
-    sides, shut = (np.zeros(widths.shape, dtype=np.intp), np.zeros(best.shape, dtype=bool)) if gates is None else (
-        gates.sides(angles), gates.shut)
+        price = np.where(usable, (finite / widths) ** _POWER, np.inf)
+    turn = _Turns.between(angles)
+    if gates is None:
+        sides = np.zeros(widths.shape, dtype=np.intp)
+        shut = np.zeros(best.shape, dtype=bool)
+    else:
+        sides = gates.sides(angles)
+        shut = gates.shut
     chosen = np.empty(best.shape, dtype=np.intp)
     middle = best.shape[1] // 2
     chosen[:, middle] = _cheapest(price[:, :, middle], turn, usable[:, :, middle], sides[:, :, middle],
@@ -96,12 +102,13 @@ def widest(widths: Array, angles: Array, gates: SingularSides | None = None) -> 
         walls = _walls(usable[:, :, k], usable[:, :, last])
         beside = chosen[:, last]
         over = walls != np.take_along_axis(walls, beside[None], axis=0)
-        over |= (sides[:, :, k] != sides[beside, np.arange(len(beside)), last]) & (shut[:, k] | shut[:, last])
+        side_beside = sides[beside, np.arange(len(beside)), last]
+        over |= (sides[:, :, k] != side_beside) & (shut[:, k] | shut[:, last])
         charge = np.where(over, np.inf, _ACROSS * turn.beside(beside))
         chosen[:, k] = _cheapest(price[:, :, k] + charge, turn, usable[:, :, k], sides[:, :, k], shut[:, k])
-    steps = (np.abs(np.diff(angles[chosen], axis=axis)).max(initial=0.0) for axis in (0, 1))
+    greatest_turn = max(np.abs(np.diff(angles[chosen], axis=axis)).max(initial=0.0) for axis in (0, 1))
     used = np.take_along_axis(widths, chosen[None], axis=0)[0]
-    return chosen if (used > 0).all() and max(steps) <= _MOST else None
+    return chosen if (used > 0).all() and greatest_turn <= _MOST else None
 
 
 def _walls(one: Bools, other: Bools) -> Index:
@@ -123,7 +130,8 @@ class _Turns(NamedTuple):
         step = np.arange(-most, most + 1)
         origin = np.arange(len(angles))[:, None] + step
         inside = (origin >= 0) & (origin < len(angles))
-        return cls(np.where(inside, origin, 0), np.where(inside, (step * (gap / _TENTH)) ** 2, np.inf))
+        price = (step * (gap / _TENTH)) ** 2
+        return cls(np.where(inside, origin, 0), np.where(inside, price, np.inf))
 
     def beside(self, angles: Index) -> Array:
         """The price of turning to each angle from those of other nodes (i,), (j, i); infinite where it is a jump."""
@@ -192,9 +200,12 @@ def bands(widths: Array, angles: Array, chosen: Index, share: float,
     if gates is not None:
         sides = gates.sides(angles)
         good &= ~gates.shut | (sides == np.take_along_axis(sides, chosen[None], axis=0))
-    low, high, count = chosen.copy(), chosen.copy(), len(angles)
+    low = chosen.copy()
+    high = chosen.copy()
+    count = len(angles)
     for _ in range(count):
-        down, up = np.maximum(low - 1, 0), np.minimum(high + 1, count - 1)
+        down = np.maximum(low - 1, 0)
+        up = np.minimum(high + 1, count - 1)
         low = np.where(np.take_along_axis(good, down[None], axis=0)[0], down, low)
         high = np.where(np.take_along_axis(good, up[None], axis=0)[0], up, high)
     return angles[low], angles[high]
@@ -215,14 +226,23 @@ def smoothest(low: Array, high: Array, along: Array, step: Array) -> Array:
     **Properties**: 1. inside the bounds; 2. no other angles inside them have a smaller sum of squared second
     differences, mixed ones included, and small shares of first ones; 3. constant where a constant fits in.
     """
-    common = float(low.max()), float(high.min())
-    if common[0] <= common[1]:
-        return np.full(low.shape, (common[0] + common[1]) / 2)
+    common_low = float(low.max())
+    common_high = float(high.min())
+    if common_low <= common_high:
+        return np.full(low.shape, (common_low + common_high) / 2)
     n, m = low.shape
     ratio = ((step[-1] - step[0]) / (m - 1)) / ((along[-1] - along[0]) / (n - 1))
-    one, two = ((_differences(n, order), _differences(m, order) / ratio**order) for order in (1, 2))
-    rows = np.concatenate([np.kron(two[0], np.eye(m)), np.kron(np.eye(n), two[1]), np.sqrt(2.0) * np.kron(*one),
-                           _SLOPE * np.kron(one[0], np.eye(m)), _SLOPE * np.kron(np.eye(n), one[1])])
+    slope_along = _differences(n, 1)
+    slope_across = _differences(m, 1) / ratio
+    bend_along = _differences(n, 2)
+    bend_across = _differences(m, 2) / ratio**2
+    rows = np.concatenate([
+        np.kron(bend_along, np.eye(m)),
+        np.kron(np.eye(n), bend_across),
+        np.sqrt(2.0) * np.kron(slope_along, slope_across),
+        _SLOPE * np.kron(slope_along, np.eye(m)),
+        _SLOPE * np.kron(np.eye(n), slope_across),
+    ])
     return _least_form(rows.T @ rows, low.ravel(), np.maximum(high, low).ravel()).reshape(n, m)
 
 
@@ -239,8 +259,9 @@ def _least_form(form: Array, low: Array, high: Array) -> Array:
         x = np.where(held < 0, low, np.where(held > 0, high, x))
         x[free] = _solve_band(form[np.ix_(free, free)], -form[np.ix_(free, ~free)] @ x[~free])
         slope = form @ x
-        new = np.where(free, np.where(x < low - _TOUCH, -1, np.where(x > high + _TOUCH, 1, 0)),
-                       np.where(held * slope > 0, 0, held))
+        passed = np.where(x < low - _TOUCH, -1, np.where(x > high + _TOUCH, 1, 0))
+        still_held = np.where(held * slope > 0, 0, held)  # released where the form falls towards the inside
+        new = np.where(free, passed, still_held)
         if (new == held).all():
             return np.asarray(np.clip(x, low, high), dtype=float)
         held = new.astype(np.int8)
