@@ -12,6 +12,8 @@ _spec.loader.exec_module(house)
 
 #: Shares of functions that are still named by a participle, at most: lower them when fewer are.
 MOST = {"core": 0.041, "workbench": 0.098}
+#: Tokens in a line of code, at most: lower them when lines hold fewer.
+DENSEST = {"core": 13.2, "workbench": 10.8}
 
 
 def test_one_noun_names_one_class() -> None:
@@ -24,6 +26,16 @@ def test_one_noun_names_one_class() -> None:
 def test_no_more_functions_are_named_by_a_participle(tree: str) -> None:
     names = house.functions(tree)
     assert sum(map(house.is_participle, names)) <= MOST[tree] * len(names)
+
+
+@pytest.mark.parametrize("tree", house.TREES)
+def test_lines_hold_no_more_than_they_did(tree: str) -> None:
+    assert house.density(tree) <= DENSEST[tree]
+
+
+def test_density_counts_code_only() -> None:
+    lines = house.code_lines('"""Text."""\n\n# why\na = f(b,\n      c)  # what\n')
+    assert dict(lines) == {4: 6, 5: 2}
 
 
 @pytest.mark.parametrize(("name", "said"), [("settled", True), ("_told", True), ("made_folders", True),
