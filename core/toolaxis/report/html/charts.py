@@ -59,9 +59,14 @@ class PageFigure:
 
 
 def _plain(figure: go.Figure, **more: Any) -> go.Figure:
-    figure.update_layout({"template": "none", "margin": {"l": 60, "r": 20, "t": 40, "b": 50}, "font": {"size": 13},
-                          "legend": {"orientation": "h", "y": -0.16, "yanchor": "top"},
-                          "hoverlabel": {"align": "left"}, **more})
+    figure.update_layout({
+        "template": "none",
+        "margin": {"l": 60, "r": 20, "t": 40, "b": 50},
+        "font": {"size": 13},
+        "legend": {"orientation": "h", "y": -0.16, "yanchor": "top"},
+        "hoverlabel": {"align": "left"},
+        **more,
+    })
     return figure
 
 
@@ -76,8 +81,14 @@ def _cells(index: NDArray[Any], traces: Sequence[int], values: Sequence[Sequence
            texts: Sequence[str] | None = None) -> dict[str, Any]:
     size = 1 if len(values[0]) <= 256 else 2
     packed = np.ascontiguousarray(index, dtype=f"<u{size}").tobytes()
-    return {"traces": list(traces), "shape": list(index.shape), "index": b64encode(packed).decode("ascii"),
-            "bytes": size, "values": [list(row) for row in values], "texts": None if texts is None else list(texts)}
+    return {
+        "traces": list(traces),
+        "shape": list(index.shape),
+        "index": b64encode(packed).decode("ascii"),
+        "bytes": size,
+        "values": [list(row) for row in values],
+        "texts": None if texts is None else list(texts),
+    }
 
 
 def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike],
@@ -103,50 +114,69 @@ def hemisphere_chart(found: AxisMap, area: float, pole: ArrayLike, marks: Mappin
     right = perpendicular(centre)[0]
     line = np.linspace(-1.0, 1.0, _SIZE)
     flat = np.stack([grid.ravel() for grid in np.meshgrid(line, line)], axis=1)
-    nearest = cKDTree(found.axis).query(from_equal_area(flat, centre, right))[1]
+    _, nearest = cKDTree(found.axis).query(from_equal_area(flat, centre, right))
     free = found.reason == 0
     width = np.where(free, area / np.where(free & (found.length > 0), found.length, np.inf), np.nan)
-    texts = [_axis_said(found, k, float(width[k]), centre) for k in range(len(found.axis))]
+    texts = [_axis_text(found, k, float(width[k]), centre) for k in range(len(found.axis))]
     none = len(texts)
     index = np.where((flat**2).sum(axis=1) <= 1.0, nearest, none).reshape(_SIZE, _SIZE)
     forbidden = [None if ok else int(code) for ok, code in zip(free, found.reason, strict=True)]
+    widths = [round(float(value), 4) if ok else None for ok, value in zip(free, width, strict=True)]
     made = go.Figure()
+    _add_hemisphere(made, width, bool(free.any()))
+    for code in sorted({int(code) for code in found.reason if code > 0}):
+        marker = {"size": 12, "symbol": "square", "color": _GREYS[code], "line": {"width": 1}}
+        made.add_scatter(x=[None], y=[None], mode="markers", name=REASONS[code], marker=marker)
+    for label, axes in marks.items():
+        x, y = np.round(equal_area(axes, centre, right), 4).T
+        symbol, colour, size = _MARKS[label]
+        marker = {"symbol": symbol, "color": colour, "size": size, "line": {"width": 1.5, "color": "#000000"}}
+        made.add_scatter(x=x, y=y, mode="markers", name=label, hoverinfo="skip", marker=marker)
+    axis = {"visible": False, "range": [-1.04, 1.04]}
+    _plain(made, title={"text": f"{escape(name)}: {none} axes looked at, around the mean normal", **_TITLE},
+           shapes=[_ring(angle) for angle in (30, 60, 90)], xaxis=axis, yaxis={**axis, "scaleanchor": "x"},
+           height=560, margin={"l": 10, "r": 10, "t": 40, "b": 10},
+           legend={"orientation": "h", "y": -0.02, "yanchor": "top"})
+    return PageFigure(made, (_cells(index, (0, 1), ([*forbidden, None], [*widths, None]), [*texts, ""]),))
+
+
+def _add_hemisphere(made: go.Figure, width: Array, any_free: bool) -> None:
+    """The pictures of forbidden axes, by their reasons, and of free ones, by their strip widths; without cells."""
     place = {"x0": -1.0, "dx": 2.0 / (_SIZE - 1), "y0": -1.0, "dy": 2.0 / (_SIZE - 1)}
     greys = [[share, colour] for k, colour in enumerate(_GREYS) for share in (k / 8, (k + 1) / 8)]
     made.add_heatmap(**place, zmin=-0.5, zmax=7.5, colorscale=greys, showscale=False,
                      hovertemplate="%{text}<extra></extra>", name="forbidden")
-    low, high = (np.nanpercentile(width, 3), np.nanmax(width)) if free.any() else (0.0, 1.0)
+    low, high = (np.nanpercentile(width, 3), np.nanmax(width)) if any_free else (0.0, 1.0)
+    bar = {"title": {"text": "strip width, mm", "side": "right"}, "thickness": 14}
     made.add_heatmap(**place, zmin=round(float(low), 5), zmax=round(float(high), 5), colorscale="Viridis",
-                     showscale=bool(free.any()), hovertemplate="%{text}<extra></extra>", name="free",
-                     colorbar={"title": {"text": "strip width, mm", "side": "right"}, "thickness": 14})
-    for code in sorted({int(code) for code in found.reason if code > 0}):
-        made.add_scatter(x=[None], y=[None], mode="markers", name=REASONS[code],
-                         marker={"size": 12, "symbol": "square", "color": _GREYS[code], "line": {"width": 1}})
-    for label, axes in marks.items():
-        spots = equal_area(axes, centre, right)
-        symbol, colour, size = _MARKS[label]
-        made.add_scatter(x=np.round(spots[:, 0], 4), y=np.round(spots[:, 1], 4), mode="markers", name=label,
-                         hoverinfo="skip", marker={"symbol": symbol, "color": colour, "size": size,
-                                                   "line": {"width": 1.5, "color": "#000000"}})
-    rings = [{"type": "circle", "x0": -r, "y0": -r, "x1": r, "y1": r, "line": {"width": 1, "dash": dash}}
-             for r, dash in ((np.sqrt(2) * np.sin(np.radians(angle) / 2), "dot" if angle < 90 else "solid")
-                             for angle in (30, 60, 90))]
-    axis = {"visible": False, "range": [-1.04, 1.04]}
-    _plain(made, title={"text": f"{escape(name)}: {none} axes looked at, around the mean normal", **_TITLE},
-           shapes=rings, xaxis=axis, yaxis={**axis, "scaleanchor": "x"}, height=560,
-           margin={"l": 10, "r": 10, "t": 40, "b": 10}, legend={"orientation": "h", "y": -0.02, "yanchor": "top"})
-    widths = [None if not ok else round(float(w), 4) for ok, w in zip(free, width, strict=True)]
-    return PageFigure(made, (_cells(index, (0, 1), ([*forbidden, None], [*widths, None]), [*texts, ""]),))
+                     showscale=any_free, hovertemplate="%{text}<extra></extra>", name="free", colorbar=bar)
 
 
-def _axis_said(found: AxisMap, k: int, width: float, pole: Array) -> str:
-    axis, code, amount = found.axis[k], int(found.reason[k]), float(found.amount[k])
+def _ring(angle: float) -> dict[str, Any]:
+    """The circle of directions at an angle, degrees, from the map's centre; the border is drawn through."""
+    radius = np.sqrt(2) * np.sin(np.radians(angle) / 2)
+    line = {"width": 1, "dash": "dot" if angle < 90 else "solid"}
+    return {"type": "circle", "x0": -radius, "y0": -radius, "x1": radius, "y1": radius, "line": line}
+
+
+def _axis_text(found: AxisMap, k: int, width: float, pole: Array) -> str:
+    """What the pointer reads of an axis."""
+    axis = found.axis[k]
+    code = int(found.reason[k])
+    if code == 0:
+        verdict = f"strip width {width:.3f} mm"
+    else:
+        verdict = f"forbidden: {REASONS[code]}{_amount_text(code, float(found.amount[k]))}"
+    numbers = ", ".join(f"{value:+.4f}" for value in axis + 0.0)
     away = float(np.degrees(angle_between(axis[None], pole)[0]))
-    by = "" if not np.isfinite(amount) or amount <= 0 else (
-        f" by {np.degrees(amount):.2f}°" if code in _ANGLES else f" by {amount:.3g} mm")
-    said = f"strip width {width:.3f} mm" if code == 0 else f"forbidden: {REASONS[code]}{by}"
-    return (f"<b>{said}</b><br>axis {', '.join(f'{value:+.4f}' for value in axis + 0.0)}<br>"
-            f"{away:.1f}° from the mean normal")
+    return f"<b>{verdict}</b><br>axis {numbers}<br>{away:.1f}° from the mean normal"
+
+
+def _amount_text(code: int, amount: float) -> str:
+    """By how much an axis breaks a limit, where that is known."""
+    if not np.isfinite(amount) or amount <= 0:
+        return ""
+    return f" by {np.degrees(amount):.2f}°" if code in _ANGLES else f" by {amount:.3g} mm"
 
 
 def map_chart(view: RestMaterialView, what: str, limit: float, name: str) -> PageFigure:
@@ -164,15 +194,15 @@ def map_chart(view: RestMaterialView, what: str, limit: float, name: str) -> Pag
     cells = view.scallop if what == "scallop" else view.gouge
     finite = cells[np.isfinite(cells)]
     most = float(finite.max()) if finite.size else 0.0
-    levels = np.linspace(0.0, 1.5 * limit, _EVEN)
-    if most > levels[-1]:
-        levels = np.concatenate([levels, levels[-1] * (most / levels[-1]) ** (np.arange(1, _RATIOS + 1) / _RATIOS)])
-        levels[-1] = most
+    levels = _levels(limit, most)
     index = np.searchsorted(levels, np.where(np.isfinite(cells), cells, 0.0), side="left")
-    index = np.where(np.isposinf(cells), len(levels), np.where(np.isnan(cells), len(levels) + 1, index))
+    not_reached = len(levels)
+    nothing = len(levels) + 1
+    index = np.where(np.isposinf(cells), not_reached, np.where(np.isnan(cells), nothing, index))
     values = [round(1000 * float(level), 3) for level in levels]
-    place = {"x0": round(float(view.corner[0] + 0.5 * view.cell), 4), "dx": round(view.cell, 6),
-             "y0": round(float(view.corner[1] + 0.5 * view.cell), 4), "dy": round(view.cell, 6)}
+    x0, y0 = (round(float(corner + 0.5 * view.cell), 4) for corner in view.corner[:2])
+    side = round(view.cell, 6)
+    place = {"x0": x0, "dx": side, "y0": y0, "dy": side}
     label = "scallop left" if what == "scallop" else "gouge"
     said = f"<b>{label} at most %{{z:.3g}} µm</b><br>X %{{x:.2f}}, Y %{{y:.2f}} mm<extra></extra>"
     traces = [{"type": "heatmap", **place, "zmin": 0.0, "zmax": round(1200 * limit, 6), "colorscale": _scale(),
@@ -191,6 +221,18 @@ def map_chart(view: RestMaterialView, what: str, limit: float, name: str) -> Pag
     none: list[float | None] = [None] * len(values)
     tables = ([*values, None, None], [*none, 1, None])
     return PageFigure({"data": traces, "layout": layout}, (_cells(index, (0, 1), tables),))
+
+
+def _levels(limit: float, most: float) -> Array:
+    """Levels of a map: evenly up to 1.5 times the limit, then by equal ratios up to the greatest value."""
+    even = np.linspace(0.0, 1.5 * limit, _EVEN)
+    last = even[-1]
+    if most <= last:
+        return even
+    shares = np.arange(1, _RATIOS + 1) / _RATIOS
+    levels = np.concatenate([even, last * (most / last) ** shares])
+    levels[-1] = most  # without rounding: no cell lies above
+    return levels
 
 
 def _scale() -> list[list[Any]]:
@@ -215,22 +257,29 @@ def widths_chart(lines: Sequence[tuple[Array, Array]], frame: tuple[Array, Array
     """
     plane = np.stack(frame, axis=1)
     points = np.concatenate([line for line, _ in lines])
-    flat, width = np.round((points - origin) @ plane, 3), np.round(np.concatenate([width for _, width in lines]), 4)
-    along = np.concatenate([np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-                            for line, _ in lines])
+    flat = np.round((points - origin) @ plane, 3).astype(np.float32)
+    width = np.round(np.concatenate([width for _, width in lines]), 4)
+    along = np.concatenate([_way_along(line) for line, _ in lines])
     number = np.repeat(np.arange(1, len(lines) + 1), [len(line) for line, _ in lines])
+    places = np.stack([number, np.round(along, 2)], axis=1).astype(np.float32)
+    bar = {"title": {"text": "mm", "side": "right"}, "thickness": 14}
+    marker = {"size": 5, "color": width.astype(np.float32), "colorscale": "Viridis", "colorbar": bar}
+    words = ("<b>strip width %{marker.color:.3f} mm</b><br>pass %{customdata[0]}, "
+             "%{customdata[1]:.1f} mm along<extra></extra>")
     made = go.Figure()
-    made.add_scatter(x=flat[:, 0].astype(np.float32), y=flat[:, 1].astype(np.float32), mode="markers",
-                     name="strip width", customdata=np.stack([number, np.round(along, 2)], axis=1).astype(np.float32),
-                     marker={"size": 5, "color": width.astype(np.float32), "colorscale": "Viridis",
-                             "colorbar": {"title": {"text": "mm", "side": "right"}, "thickness": 14}},
-                     hovertemplate="<b>strip width %{marker.color:.3f} mm</b><br>pass %{customdata[0]}, "
-                                   "%{customdata[1]:.1f} mm along<extra></extra>")
+    made.add_scatter(x=flat[:, 0], y=flat[:, 1], mode="markers", name="strip width", customdata=places,
+                     marker=marker, hovertemplate=words)
     _plain(made, title={"text": f"{escape(name)}: strip width {width.min():.3f} to {width.max():.3f} mm",
                         **_TITLE}, height=520,
            xaxis={"title": {"text": "X of the work coordinate system, mm"}, "constrain": "domain"},
            yaxis={"title": {"text": "Y, mm"}, "scaleanchor": "x", "constrain": "domain"})
     return PageFigure(made)
+
+
+def _way_along(line: Array) -> Array:
+    """Way along a polyline to each of its points, (n,) mm."""
+    chords = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(chords)])
 
 
 def feed_chart(places: Array, speeds: Array, programmed: float, name: str) -> PageFigure:
