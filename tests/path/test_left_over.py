@@ -6,7 +6,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.strip.swept_volume import distance_to_removed, distance_to_removed_numpy
-from toolaxis.numeric.polygons import inside, slabs
+from toolaxis.numeric.polygons import inside, polygon_area, slabs
 from toolaxis.path import rest_material
 from toolaxis.path.rest_grid import sample_grid
 from toolaxis.path.rest_material import (
@@ -15,6 +15,7 @@ from toolaxis.path.rest_material import (
     RestFinder,
     machined_regions,
     may_stay,
+    split,
     undercut,
 )
 from toolaxis.search.face_problem import FaceProblem, task
@@ -36,6 +37,19 @@ def post(x: float, y: float, radius: float, height: float = 9.0) -> ta.Face:
     t = np.linspace(0, 2 * np.pi, 41)
     ring = np.column_stack([x + radius * np.cos(t), y + radius * np.sin(t)])
     return ta.Face.from_bspline([[[*p, z] for z in (height, -3.0)] for p in ring], degree=(1, 1))
+
+
+def test_zones_are_cut_out_of_an_outline_whose_loops_touch() -> None:
+    """What several operations leave side by side: a border across the line between them crosses both in one place."""
+    below, above = (np.array([[0, y], [1, y], [1, y + 0.5], [0, y + 0.5]]) for y in (0.0, 0.5))
+    rng = np.random.default_rng(0)
+    for _ in range(40):
+        angle = np.sort(rng.uniform(0, 2 * np.pi, int(rng.integers(5, 40))))
+        zone = 0.5 + rng.uniform(0.1, 0.4, len(angle))[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+        inner, rest = split((below, above), (zone,))
+        area = polygon_area((zone,))
+        assert polygon_area(inner) == pytest.approx(area, abs=1e-5)
+        assert polygon_area(rest) == pytest.approx(1 - area, abs=1e-5)
 
 
 @pytest.fixture(scope="module")

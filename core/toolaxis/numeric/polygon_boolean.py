@@ -305,20 +305,29 @@ def _single_edges(loops: Sequence[Array]) -> Loops:
 
 def _with_corners(loops: Loops, others: Loops) -> list[Array]:
     """Loops with those corners of others put in that lie on their edges."""
-    points = np.concatenate(others)
+    every = np.concatenate(others)
+    every = every[np.argsort(every[:, 0], kind="stable")]
     made = []
     for loop in loops:
         ends = np.roll(loop, -1, axis=0)
+        off = 1e-12 * float(np.abs(loop).max())
+        first = np.searchsorted(every[:, 0], np.minimum(loop[:, 0], ends[:, 0]) - off, side="left")
+        last = np.searchsorted(every[:, 0], np.maximum(loop[:, 0], ends[:, 0]) + off, side="right")
         rows = []
-        for a, b in zip(loop, ends, strict=True):
-            way = b - a
-            share = (points - a) @ way / max(float(way @ way), np.finfo(float).tiny)
-            off = np.abs((points - a)[:, 0] * way[1] - (points - a)[:, 1] * way[0])
-            on = (share > 0) & (share < 1) & (off <= 1e-12 * float(way @ way) ** 0.5 * float(np.abs(loop).max()))
-            on &= (points != a).any(axis=1) & (points != b).any(axis=1)
-            rows += [a[None], points[on][np.argsort(share[on])]]
+        for a, b, near in zip(loop, ends, map(slice, first, last), strict=True):
+            rows += [a[None], _corners_between(a, b, every[near], off)]
         made.append(np.concatenate(rows))
     return made
+
+
+def _corners_between(a: Array, b: Array, points: Array, off: float) -> Array:
+    """Of some points those between the ends of an edge, no farther from it than allowed, in their order along it."""
+    way = b - a
+    share = (points - a) @ way / max(float(way @ way), np.finfo(float).tiny)
+    away = np.abs((points - a)[:, 0] * way[1] - (points - a)[:, 1] * way[0])
+    on = (share > 0) & (share < 1) & (away <= off * float(way @ way) ** 0.5)
+    on &= (points != a).any(axis=1) & (points != b).any(axis=1)
+    return np.asarray(points[on][np.argsort(share[on], kind="stable")])
 
 
 def _chain_edges(edges: list[Edge]) -> Loops:

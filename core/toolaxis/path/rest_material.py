@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divide_polygon, without
+from toolaxis.numeric.polygon_boolean import divide_nearly, divide_polygon, join_touching, without
 from toolaxis.numeric.polygons import polygon_area
 from toolaxis.path.rest_grid import FINE, sample_again, sample_grid
 from toolaxis.plan.zone import Zone
@@ -327,6 +327,9 @@ def _partition_by(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T]
 def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
     """What of an outline lies inside loops, and the rest; loops are moved by rounding where corners coincide.
 
+    Where that is not enough loops of the outline that touch are joined, and the others moved by a millionth of their
+    size.
+
     Parameters
     ----------
     outline, loops : tuple of (m, 2) arrays
@@ -338,7 +341,10 @@ def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[A
             return divide_polygon(outline, tuple(loop + shift for loop in loops))
         except InvalidInput:
             continue
-    raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own")
+    try:  # loops of an outline that touch each other are crossed twice in one place where they do
+        return divide_nearly(join_touching(outline), loops)
+    except InvalidInput as reason:
+        raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own") from reason
 
 
 def also_machined(face: Face, zone: Zone, others: Sequence[Excess]) -> Zone:
