@@ -29,6 +29,7 @@ from toolaxis.report.figures.plots import (
     study_picture,
     widths_picture,
 )
+from toolaxis.report.figures.splat_renderer import camera, points_on
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.tools.tool import Tool
@@ -121,6 +122,18 @@ def test_the_part_is_seen_from_where_most_of_it_is_machined() -> None:
     assert np.allclose(side_of_tools([both[0], replace(both[1], face=small)]), axes[0])
     none = replace(op, orientation=Orientation(None), path=None)
     assert side_of_tools([none])[2] > 0.9, "without an axis the normals tell"
+
+
+def test_what_bulges_beyond_its_border_is_in_the_picture() -> None:
+    """The border of a closed face, such as a sphere's seam, does not tell how far the face goes."""
+    net = np.array([[[x, y, 0.0] for y in (0.0, 10, 20, 30)] for x in (0.0, 10, 20, 30)])
+    net[1:3, 1:3, 2] = 60.0
+    dome = Face.from_bspline(net)
+    seen = camera((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), points_on([dome]))
+    left, right, bottom, top = seen.extent
+    flat = seen.project(dome.evaluate(dome.grid(200, 200)).point)
+    assert flat[:, 1].max() > 30 and left <= flat[:, 0].min() and flat[:, 0].max() <= right
+    assert bottom <= flat[:, 1].min() and flat[:, 1].max() <= top
 
 
 def test_overview_shows_a_sliver_that_is_left() -> None:

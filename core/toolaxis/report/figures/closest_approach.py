@@ -14,7 +14,7 @@ from toolaxis.numeric.vectors import perpendicular, unit
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.report.figures.plots import BLUE, VERMILION, bare, figure, scale_bar
-from toolaxis.report.figures.splat_renderer import Camera, Canvas, camera, tool_outlines
+from toolaxis.report.figures.splat_renderer import Camera, Canvas, camera, points_on, tool_outlines
 from toolaxis.shape.differential import normals
 from toolaxis.shape.face import Face
 
@@ -74,7 +74,7 @@ def tightest_picture(plan: Plan, op: Operation, at: ToolPlace) -> Figure:
     outlines = tool_outlines(op.tool, 8 * op.tool.radius)
     tool_points = np.concatenate([at.tip + line[:, 1:] * axis + sign * line[:, :1] * aside
                                   for line in outlines.values() for sign in (1, -1)])
-    corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
+    corners = points_on(plan.part.faces)
     everything = np.concatenate([tool_points, corners])
     _draw(whole, plan, op, _Scene(at, outlines, camera(back, axis, everything, pixels=900)))
     span = 2.2 * op.tool.radius + 1.5 * max(at.distance, 0.0)

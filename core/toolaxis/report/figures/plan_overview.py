@@ -25,6 +25,7 @@ from toolaxis.report.figures.splat_renderer import (
     camera,
     face_splats,
     mean_direction,
+    points_on,
     visible_runs,
 )
 from toolaxis.shape.face import Face
@@ -60,7 +61,7 @@ def overview_picture(plan: Plan) -> Figure:
     """
     copies = {} if plan.blades is None else plan.blades.copies
     operations = tuple(op for op in plan.operations if op.number not in copies)
-    corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
+    corners = points_on(plan.part.faces)
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     arrows = _arrow_ends(operations, (0.22 if len(operations) <= _MANY else 0.16) * size)
     seen = camera(*view_onto(side_of_tools(operations)), np.concatenate([corners, *arrows]), pixels=1100)

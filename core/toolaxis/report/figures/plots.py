@@ -26,6 +26,7 @@ from toolaxis.report.figures.splat_renderer import (
     camera_onto,
     face_splats,
     mean_direction,
+    points_on,
     splats_of_revolution,
     tool_outlines,
     visible_runs,
@@ -103,10 +104,8 @@ def operation_picture(plan: Plan, op: Operation) -> Figure:
 
 def _close_up(ax: Axes, op: Operation, view: tuple[Array, Array]) -> None:
     assert op.path is not None
-    loops = np.concatenate([op.face.evaluate(loop).point for loop in op.face.outline])
-    surface = op.face.evaluate(op.face.grid(24, 24)).point
     cut = op.path.cc[op.path.kind == Motion.CUT]
-    canvas = Canvas(camera(view[0], view[1], np.concatenate([loops, surface, cut])))
+    canvas = Canvas(camera(view[0], view[1], np.concatenate([points_on([op.face]), cut])))
     canvas.splat(*face_splats(op.face, canvas.camera), _FACE)
     canvas.close()
     hatch(canvas, zone_faces(op), 0.01 * op.face.diagonal)
@@ -183,7 +182,7 @@ def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -
     outlines = tool_outlines(op.tool, 8 * op.tool.radius)
     ends = np.array([tip + z * axis + r * side for line in outlines.values() for r, z in line
                      for side in (op.frame.x, -op.frame.x, op.frame.y, -op.frame.y)])
-    corners = np.concatenate([face.evaluate(loop).point for face in plan.part.faces for loop in face.outline])
+    corners = points_on(plan.part.faces)
     length = 1.12 * float(np.max((ends - tip) @ axis))
     seen = camera(view[0], view[1], np.concatenate([ends, corners, [tip + length * axis]]))
     canvas, tool = Canvas(seen), Canvas(seen)

@@ -1,5 +1,6 @@
 """Pictures of solids without a display: points splatted into a depth buffer, seen in parallel projection."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 from weakref import WeakKeyDictionary
@@ -158,6 +159,16 @@ class Canvas:
         rows, columns = self.camera.shape
         row, column = np.clip(place[:, 1], 0, rows - 1), np.clip(place[:, 0], 0, columns - 1)
         return np.asarray(flat[:, 2] >= self.depth[row, column] - slack)
+
+
+def points_on(faces: Iterable[Face]) -> Array:
+    """Points between which all of some faces lies, (n, 3) mm: of their borders, and inside, where a closed one bulges.
+
+    Parameters
+    ----------
+    faces : iterable of Face
+    """
+    return np.concatenate([face.evaluate(uv).point for face in faces for uv in (*face.outline, face.grid(24, 24))])
 
 
 def face_splats(face: Face, seen: Camera) -> tuple[Array, Array]:
