@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -51,15 +52,17 @@ DPI = 110
 _ASIDE = "#e8e8e8"
 
 
-def figure(width: float, height: float) -> Figure:
+def figure(width: float, height: float, *, laid_out: bool = True) -> Figure:
     """An empty figure that needs no display.
 
     Parameters
     ----------
     width, height : float
         Inches.
+    laid_out : bool
+        Whether places are found for what is in it, which takes as long as drawing it; else each part is given its own.
     """
-    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained" if laid_out else None)
     FigureCanvasAgg(made)
     return made
 
@@ -260,64 +263,83 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
         Allowed scallop height and gouge depth, mm.
     name : str
     """
-    made = figure(12.5, 5.8)
-    left, right = made.subplots(1, 2)
+    made = figure(12.5, 5.8, laid_out=False)  # a plan has hundreds of these, and all look alike
     scallop = np.concatenate([one.remaining for one in maps])
     depth = np.concatenate([one.gouge for one in maps])
-    seen = camera_onto(np.concatenate([one.face.normal(one.uv) for one in maps]),
-                       np.concatenate([one.point for one in maps]), pixels=700)
-    aside = np.concatenate([one.declared for one in maps])
-    _map_panel(made, left, (maps, 1000 * scallop, seen), ("scallop left, µm", 1000 * limit, "viridis"), aside)
-    _map_panel(made, right, (maps, 1000 * depth, seen), ("gouge, µm", 1000 * gouge, "Blues"))
+    seen = _SeenPlaces.of(maps)
+    aside = seen.show(np.concatenate([one.declared for one in maps]).astype(float)) > 0
+    left, right = made.add_axes((0.02, 0.1, 0.38, 0.82)), made.add_axes((0.52, 0.1, 0.38, 0.82))
+    _map_panel(left, (seen, seen.show(1000 * scallop), aside), ("scallop left, µm", 1000 * limit, "viridis"))
+    _map_panel(right, (seen, seen.show(1000 * depth), np.zeros_like(aside)), ("gouge, µm", 1000 * gouge, "Blues"))
     left.set_title(f"{name}: scallop left, limit {1000 * limit:g} µm", fontsize=10)
     deepest = 1000 * float(depth.max())
     right.set_title(f"{name}: gouge in the face, greatest {deepest:.2f} µm, allowed {1000 * gouge:g} µm", fontsize=10)
     return made
 
 
-def _map_panel(made: Figure, ax: Axes, data: tuple[Sequence[SurfaceMap], Array, Camera],
-               scale: tuple[str, float, str], aside: Bools | None = None) -> None:
-    """One map; what lies aside is hatched, whatever is left there."""
-    from scipy.spatial import cKDTree
+class _SeenPlaces(NamedTuple):
+    """Which judged place each pixel of a map shows.
 
-    maps, value, seen = data
-    label, limit, colours = scale
-    flat = seen.project(np.concatenate([one.point for one in maps]))
-    facing = np.concatenate([one.face.normal(one.uv) for one in maps]) @ seen.back > 0
-    tree = cKDTree(flat[facing, :2])
+    camera : Camera
+    place : (rows, columns) array of int, among the places of all maps; -1 where there is none
+    """
+
+    camera: Camera
+    place: NDArray[np.intp]
+
+    @staticmethod
+    def of(maps: Sequence[SurfaceMap]) -> "_SeenPlaces":
+        """The places of maps, seen along the mean of their normals."""
+        from scipy.spatial import cKDTree
+
+        points = np.concatenate([one.point for one in maps])
+        normals = np.concatenate([one.face.normal(one.uv) for one in maps])
+        seen = camera_onto(normals, points, pixels=700)
+        facing = np.flatnonzero(normals @ seen.back > 0)
+        x, y = _pixel_centres(seen)
+        grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        reach = 1.5 * max(one.spacing for one in maps) + seen.pixel
+        _, nearest = cKDTree(seen.project(points[facing])[:, :2]).query(grid, distance_upper_bound=reach)
+        return _SeenPlaces(seen, np.append(facing, -1)[nearest].reshape(seen.shape))
+
+    def show(self, values: Array) -> Array:
+        """The values of the places, (rows, columns), NaN where no place is."""
+        return np.asarray(np.append(values, np.nan)[self.place])
+
+
+def _pixel_centres(seen: Camera) -> tuple[Array, Array]:
+    """Where the columns and rows of a picture are, mm."""
     rows, columns = seen.shape
     x = seen.low[0] + (np.arange(columns) + 0.5) * seen.pixel
     y = seen.low[1] + (np.arange(rows) + 0.5) * seen.pixel
-    grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    reach = 1.5 * max(one.spacing for one in maps) + seen.pixel
-    distance, nearest = tree.query(grid, distance_upper_bound=reach)
-    picture = np.full(len(grid), np.nan)
-    shown = np.flatnonzero(facing)[nearest[np.isfinite(distance)]]
-    picture[np.isfinite(distance)] = value[shown]
-    hatched = np.zeros(len(grid), dtype=bool)
-    if aside is not None:
-        hatched[np.isfinite(distance)] = aside[shown]
-        picture[hatched] = np.nan
-    finite = np.where(np.isfinite(picture), picture, np.nan)
-    image = ax.imshow(finite.reshape(rows, columns), origin="lower", extent=seen.extent, interpolation="nearest",
+    return x, y
+
+
+def _map_panel(ax: Axes, data: tuple[_SeenPlaces, Array, Bools], scale: tuple[str, float, str]) -> None:
+    """One map, its scale to the right of it; what lies aside is hatched, whatever is left there."""
+    seen, picture, aside = data
+    label, limit, colours = scale
+    x, y = _pixel_centres(seen.camera)
+    finite = np.where(np.isfinite(picture) & ~aside, picture, np.nan)
+    image = ax.imshow(finite, origin="lower", extent=seen.camera.extent, interpolation="nearest",
                       cmap=colormaps[colours].with_extremes(over=VERMILION), norm=Normalize(0.0, 1.1 * limit))
-    lost = np.isinf(picture).reshape(rows, columns)
+    lost = np.isinf(picture) & ~aside
     if lost.any():
         ax.contourf(x, y, lost.astype(float), levels=[0.5, 1.5], colors=[GREY])
-    bar = made.colorbar(image, ax=ax, extend="max", shrink=0.85)
+    made, beside = ax.figure, ax.get_position().x1
+    bar = made.colorbar(image, cax=made.add_axes((beside + 0.015, 0.16, 0.018, 0.7)), extend="max")
     bar.set_label(label)
     bar.ax.axhline(limit, color="black", linewidth=1)
     handles = [Patch(facecolor=VERMILION, label="above 1.1 times the limit")]
     handles += [Patch(facecolor=GREY, label="not reached")] if lost.any() else []
-    if hatched.any():
-        over = hatched.reshape(rows, columns).astype(float)
-        drawn = ax.contourf(x, y, over, levels=[0.5, 1.5], colors=[_ASIDE], hatches=["////"])
+    if aside.any():
+        drawn = ax.contourf(x, y, aside.astype(float), levels=[0.5, 1.5], colors=[_ASIDE], hatches=["////"])
         drawn.set_edgecolor("#777777")
         drawn.set_linewidth(0.0)
         handles.append(Patch(facecolor=_ASIDE, edgecolor="#777777", linewidth=0.0, hatch="////",
                              label="left to clean-up: not asked for"))
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
-    scale_bar(ax, seen)
+    scale_bar(ax, seen.camera)
     bare(ax)
 
 
