@@ -22,7 +22,7 @@ from toolaxis.verify.lead_arcs import LeadCount, check_leads
 from toolaxis.verify.machine_collision import KINDS, machine_rooms, meeting_reasons
 from toolaxis.verify.maps import MapPoint, MapZone, SurfaceMap, place_at, surface_map
 from toolaxis.verify.material_removal import Removal, RestMaterial
-from toolaxis.verify.near_faces import SweptBox
+from toolaxis.verify.near_faces import SweptBoxes
 from toolaxis.verify.pass_distances import FACTOR as STEP_OVER_FACTOR
 from toolaxis.verify.pass_distances import MeasuredFace, PassDistance, greatest_distance
 from toolaxis.verify.rays import gouge_spacing
@@ -232,21 +232,21 @@ def measure(task: VerificationTask, spacing: float | None = None, threads: int =
     """
     cl = (task.tips, task.axes, task.kind)
     cutter = Removal(cl, task.profile, threads=threads, progress=progress)
-    cut = partial(cutter.along, height=_standing(task))
+    standing = _standing(task)
+    depths = Depths(task, partial(cutter.along, height=standing))
 
-    depths = Depths(task, cut)
-
-    def along(face: Face, point: Array, normal: Array) -> RestMaterial:
-        left = cut((point + task.allowance * normal, normal), depth=task.depth)
+    def along(face: Face, point: Array, normal: Array, height: float = standing) -> RestMaterial:
+        left = cutter.along((point + task.allowance * normal, normal), depth=task.depth, height=height)
         depths.correct(face, (point, normal), left)
         return left
 
     left = DeclaredZones(task.left, STRIP * (task.profile.flat_radius + task.profile.corner_radius))
     targets = tuple(surface_map(face, partial(along, face), spacing, declared=partial(left.holds, face))
                     for face in task.targets)
-    swept, lever = SweptBox(task.tips, task.axes, task.profile), abs(task.allowance) + max(task.depth, _standing(task))
-    near = [face for face in task.skin if swept.may_come_to(face, lever)]
-    skin = tuple(_keep_touched(surface_map(face, partial(along, face), spacing or _spacing_for_gouges(face, task),
+    swept, above = SweptBoxes(task.tips, task.axes, task.profile), task.tolerance.gouge
+    near = [face for face in task.skin if swept.may_come_to(face, abs(task.allowance) + max(task.depth, above))]
+    skin = tuple(_keep_touched(surface_map(face, partial(along, face, height=above),
+                                           spacing or _spacing_for_gouges(face, task),
                                            heights=False)) for face in near)
     links = Removal(cl, task.profile, among=(Motion.LINK,), threads=threads, progress=progress)
     link_cut = _link_cut(task, targets, partial(links.along, height=_standing(task), cutting=(Motion.LINK,)))
