@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 _STEPS = 24
 #: Corners of a cell, anticlockwise, and the edges between them: (di, dj) of a corner; edge k runs from k to k + 1.
@@ -36,48 +37,60 @@ def contours(values: Array, lines: tuple[Array, Array],
     **Properties**: 1. no two polygons cross; 2. every vertex lies on a line of the grid.
     """
     x, y = (np.concatenate([line[:1], line, line[-1:]]) for line in lines)
-    f = np.full((len(x), len(y)), -1.0)
-    f[1:-1, 1:-1] = values
-    above = f > 0
+    above = np.zeros((len(x), len(y)), dtype=bool)
+    above[1:-1, 1:-1] = values > 0
     left_low = above[:-1, :-1]
     right_low = above[1:, :-1]
     right_high = above[1:, 1:]
     left_high = above[:-1, 1:]
     cells = np.argwhere((left_low != right_low) | (right_low != right_high) | (right_high != left_high))
-    at = _vertices(f, (x, y), function, halvings)
+    at = _vertices(values, above, (x, y), function, halvings)
     joined: dict[tuple[int, int, int], list[tuple[int, int, int]]] = {}
     for i, j in cells.tolist():
-        for one, other in _segments(f, above, i, j):
+        for one, other in _segments(values, above, i, j):
             joined.setdefault(one, []).append(other)
             joined.setdefault(other, []).append(one)
     return _trace_lines(joined, at)
 
 
-def _vertices(f: Array, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
+def _vertices(values: Array, above: Bools, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
               halvings: int) -> dict[tuple[int, int, int], Array]:
-    """Where edges of the grid cross zero, by axis along which the edge runs and its lower node."""
-    keys = []
-    ends = []  # of each edge, the node above zero and the other one
-    for axis in (0, 1):
-        g = np.moveaxis(f, axis, 0)
-        along, across = np.nonzero((g[1:] > 0) != (g[:-1] > 0))
-        for a, c in zip(along.tolist(), across.tolist(), strict=True):
-            low, high = ((a, c), (a + 1, c)) if axis == 0 else ((c, a), (c, a + 1))
-            keys.append((axis, *low))
-            ends.append((low, high) if f[low] > 0 else (high, low))
-    if not keys:
+    """Where edges of the grid cross zero, by axis along which the edge runs and its lower node.
+
+    above : of the nodes of the grid with one more around it, as are lines
+    """
+    first, second = np.argwhere(above[1:] != above[:-1]), _by_columns(above[:, 1:] != above[:, :-1])
+    low = np.concatenate([first, second])
+    if not len(low):
         return {}
-    above, below = np.array(ends).swapaxes(0, 1)
-    good, bad = (np.column_stack([lines[0][node[:, 0]], lines[1][node[:, 1]]]) for node in (above, below))
-    high_value = f[above[:, 0], above[:, 1]]
-    low_value = f[below[:, 0], below[:, 1]]
+    along_second = np.arange(len(low)) >= len(first)
+    high = low + np.where(along_second[:, None], [0, 1], [1, 0])
+    turned = ~above[low[:, 0], low[:, 1]][:, None]
+    inner, outside = np.where(turned, high, low), np.where(turned, low, high)
+    good, bad = (np.column_stack([lines[0][node[:, 0]], lines[1][node[:, 1]]]) for node in (inner, outside))
+    high_value, low_value = _values_at(values, inner), _values_at(values, outside)
     share = (high_value / (high_value - low_value))[:, None]
     # Beyond the grid's border there is nothing: lines run along it.
-    outer = ((below == 0) | (below == np.array(f.shape) - 1)).any(axis=1)
+    outer = ((outside == 0) | (outside == np.array(above.shape) - 1)).any(axis=1)
     points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
     if function is not None and not outer.all():
         points[~outer] = _bisect(function, good[~outer], bad[~outer], halvings)
+    keys = zip(along_second.astype(int).tolist(), *low.T.tolist(), strict=True)
     return dict(zip(keys, points, strict=True))
+
+
+def _by_columns(marked: Bools) -> NDArray[np.int64]:
+    """Rows and columns of what is marked, one column after the other, (k, 2)."""
+    found = np.argwhere(marked)
+    return np.asarray(found[np.lexsort(found.T)])
+
+
+def _values_at(values: Array, nodes: NDArray[np.int64]) -> Array:
+    """Values at nodes (k, 2) of the grid with one more around it, where they are -1."""
+    inside = ((nodes > 0) & (nodes <= values.shape)).all(axis=1)
+    found = np.full(len(nodes), -1.0)
+    found[inside] = values[nodes[inside, 0] - 1, nodes[inside, 1] - 1]
+    return found
 
 
 def _bisect(function: Callable[[Array], Array], good: Array, bad: Array, halvings: int) -> Array:
@@ -89,7 +102,7 @@ def _bisect(function: Callable[[Array], Array], good: Array, bad: Array, halving
     return (good + bad) / 2
 
 
-def _segments(f: Array, above: NDArray[np.bool_], i: int,
+def _segments(values: Array, above: Bools, i: int,
               j: int) -> list[tuple[tuple[int, int, int], tuple[int, int, int]]]:
     """Pieces of the line through one cell; where all four edges are crossed, the mean of the corners decides."""
     edges = ((0, i, j), (1, i + 1, j), (0, i, j + 1), (1, i, j))
@@ -98,7 +111,8 @@ def _segments(f: Array, above: NDArray[np.bool_], i: int,
     if len(crossed) == 2:
         first, second = crossed
         return [(edges[first], edges[second])]
-    middle = float(f[i:i + 2, j:j + 2].sum()) > 0
+    around = np.array([(i + a, j + b) for a, b in _CORNERS])
+    middle = float(_values_at(values, around).sum()) > 0
     if middle != corner[1]:
         return [(edges[0], edges[1]), (edges[2], edges[3])]
     return [(edges[3], edges[0]), (edges[1], edges[2])]

@@ -133,11 +133,10 @@ def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Boo
 
     Of the nodes that are not sure it is asked only among some, (m, n) bool, where these are given.
     """
-    wanted = np.zeros(values.shape, dtype=bool)
+    small_ones = []
     while len(blocks):
         small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
-        for i0, j0, i1, j1 in blocks[small]:
-            wanted[i0:i1 + 1, j0:j1 + 1] = True
+        small_ones.append(blocks[small])
         blocks = blocks[~small]
         low = np.column_stack([line[blocks[:, k]] for k, line in enumerate(lines)])
         high = np.column_stack([line[blocks[:, k + 2]] for k, line in enumerate(lines)])
@@ -146,8 +145,25 @@ def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Boo
         for i0, j0, i1, j1 in blocks[sure]:
             values[i0:i1 + 1, j0:j1 + 1] = 1.0
         blocks = _quarters(blocks[~sure])
-    i, j = np.nonzero(wanted if among is None else wanted & among)
+    i, j = _nodes_of(small_ones, values.shape[1])
+    if among is not None:
+        asked = among[i, j]
+        i, j = i[asked], j[asked]
     values[i, j] = function(np.column_stack([lines[0][i], lines[1][j]]))
+
+
+def _nodes_of(blocks: list[Ints], columns: int) -> tuple[Ints, Ints]:
+    """Rows and columns of all nodes of small blocks, each once, in their order; a grid may have millions of others."""
+    if not blocks:
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    i0, j0, i1, j1 = np.concatenate(blocks).T
+    found = []
+    for down in range(_SMALL + 1):
+        for across in range(_SMALL + 1):
+            there = (i0 + down <= i1) & (j0 + across <= j1)
+            found.append((i0[there] + down) * columns + j0[there] + across)
+    i, j = np.divmod(np.unique(np.concatenate(found)), columns)
+    return i, j
 
 
 def _quarters(blocks: Ints) -> Ints:

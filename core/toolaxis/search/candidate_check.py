@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -107,7 +108,7 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
             proof = PathCheck(Violation(CUTTER, 0.0, words=STAYS_BETWEEN))
     path, area = made.path, job.worth.face.area
     if made.undercut > may_stay(made.zones, area):
-        made = _leave_corners(made, area)
+        made = _leave_corners(made, area, anywhere=job.worth.index_length > 0)
     if proof.witness is None and made.undercut > may_stay(made.zones, area):
         # Closer passes help where a strip is narrower than it was measured, and not in a hollow: they are tried once.
         closer = _find_closer_share(job, made, [zone for zone in made.zones if zone.at_wall])
@@ -125,9 +126,12 @@ def check_candidate(job: FaceProblem, one: CountedAxis) -> CheckedCandidate:
     return CheckedCandidate(one, found, proof, path, made.longer, job.laid_for)
 
 
-def _leave_corners(made: FurtherPasses, area: float) -> FurtherPasses:
-    """The same with small places that no pass cuts left to a clean-up tool, where one has to come to walls anyway."""
-    if made.undercut > _MAY_LEAVE * area or not any(zone.at_wall for zone in made.zones):
+def _leave_corners(made: FurtherPasses, area: float, *, anywhere: bool) -> FurtherPasses:
+    """The same with small places that no pass cuts left to another tool, where one has to come to walls anyway.
+
+    anywhere : whether other tools follow, so that these places may be anywhere
+    """
+    if made.undercut > _MAY_LEAVE * area or not (anywhere or any(zone.at_wall for zone in made.zones)):
         return made
     return made._replace(zones=tuple(replace(zone, at_wall=True) for zone in made.zones))
 
@@ -186,6 +190,7 @@ def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zon
     return job.laid_for * min(step, _CLOSER * limit / (limit + highest))
 
 
+@lru_cache(maxsize=2)  # each candidate asks for those of the same face
 def _scatter_places(face: Face, count: int) -> Array:
     """Parameters of a face, (n, 2), of so many places on it, or fewer where it fills next to nothing of its range.
 
