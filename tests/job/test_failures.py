@@ -235,6 +235,29 @@ def test_the_judge_s_own_fault_is_told_of_the_operation_that_it_was_about(faultl
         assert document["passed"] is False and document["operations"][1]["gouge_max"] is None
 
 
+def test_several_processes_judge_as_one_does(faultless: Plan) -> None:
+    one, two = (ta.verify(faultless, workers=workers) for workers in (1, 2))
+    assert verdict_document(faultless, one) == verdict_document(faultless, two) and one.passed
+    for own, other in zip(one.operations, two.operations, strict=True):
+        assert [seen.face.label for seen in own.maps] == [seen.face.label for seen in other.maps]
+        for seen, there in zip(own.maps, other.maps, strict=True):
+            assert seen.face.surface.control.tolist() == there.face.surface.control.tolist()
+            assert seen.remaining.tolist() == there.remaining.tolist() and seen.gouge.tolist() == there.gouge.tolist()
+
+
+def test_a_process_that_dies_costs_the_operation_that_it_judged(faultless: Plan,
+                                                                monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = judge.measure
+
+    def _measure(task, *rest):
+        return os._exit(3) if task.name.endswith("face2") else whole(task, *rest)
+
+    monkeypatch.setattr(judge, "measure", _measure)
+    verdict = ta.verify(faultless, workers=2)
+    assert [op.passed for op in verdict.operations] == [True, False, True] and not verdict.unjudged
+    assert "exit code 3" in verdict.operations[1].reasons[0]
+
+
 def test_a_face_that_cannot_be_divided_so_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = np.meshgrid(np.linspace(0, 3, 4), np.linspace(0, 3, 4), indexing="ij")
     small = ta.Face.from_bspline(np.stack([x + 40, y, np.zeros_like(x)], axis=-1))

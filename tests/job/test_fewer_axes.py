@@ -107,9 +107,11 @@ def test_tools_that_turn_out_quicker_take_over(large_first: None) -> None:
     assert [op.number for op in plan.operations] == [1] and ta.verify(plan).passed
 
 
-def test_nothing_is_planned_twice_where_little_is_to_be_gained(large_first: None,
-                                                               monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(other_tools, "_SECONDS", 1e6)
+@pytest.mark.parametrize("limit", [{"_SECONDS": 1e6}, {"_OF_ALL": 1.0}], ids=["on a face", "in all"])
+def test_nothing_is_planned_twice_where_little_is_to_be_gained(large_first: None, monkeypatch: pytest.MonkeyPatch,
+                                                               limit: dict[str, float]) -> None:
+    for name, value in limit.items():
+        monkeypatch.setattr(other_tools, name, value)
     plan = planned_bowl()
     assert [op.tool.name for op in plan.operations] == ["ball:8"]
     assert not ReckonedTimes().find_slow_faces(plan.operations, plan.inputs, {0, 1})

@@ -165,7 +165,7 @@ def test_what_is_the_same_at_each_blade_is_measured_and_drawn_once(monkeypatch: 
     operations = list(made.operations)
     operations[4] = replace(spoilt, path=replace(spoilt.path, cl=tips))
     verdict = ta.verify(replace(made, operations=tuple(operations)), spacing=1.0)
-    assert measured[2:] == [*measured[:2], spoilt.name]
+    assert sorted(measured[2:]) == sorted([*measured[:2], spoilt.name])
     assert [op.passed for op in verdict.operations] == [op.number != spoilt.number for op in made.operations]
     draw_verdict(made, verdict, tmp_path)
     assert (tmp_path / f"{spoilt.name}-verdict.png").is_file()

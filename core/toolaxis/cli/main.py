@@ -218,6 +218,8 @@ def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
                                           "is left with the part. Exit code 1 where it fails.")
     sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
+    sub.add_argument("--workers", type=int, metavar="N",
+                     help="processes to judge and draw with; all cores unless given")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.verify")
 

@@ -11,6 +11,7 @@ from toolaxis.errors import Cancelled
 from toolaxis.job.files.plan_folder import OF_VERDICT, read_plan, stage_folder, write_json
 from toolaxis.job.files.verdict_maps import write_views
 from toolaxis.job.output.verify import not_judged, passes, verdict_document, verify_plan
+from toolaxis.job.planning.parallel import check_workers
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
 from toolaxis.report.areas_aside import describe_open
@@ -36,17 +37,17 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     int
         0 where everything passed, 1 where not, 130 where the user stopped it.
     """
-    folder = Path(given.folder)
+    folder, workers = Path(given.folder), check_workers(given.workers)
     with show_progress(asked) as progress:
         plan = read_plan(folder)
         with stage_folder(folder) as stage:
-            verdict = verify_plan(plan, progress=progress)
+            verdict = verify_plan(plan, workers=workers, progress=progress)
             document = verdict_document(plan, verdict)
             with writing():
                 write_json(document, stage.folder / "verdict.json")
                 write_views(plan, verdict, stage.folder)
             if not (given.no_pictures or verdict.unjudged):
-                _draw(plan, verdict, stage.folder, progress)
+                _draw(plan, verdict, stage.folder, progress, workers)
             with writing():
                 stage.publish(OF_VERDICT)
     if given.json:
@@ -75,13 +76,12 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     return 0 if passes(plan, verdict) else 1
 
 
-def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress) -> None:
+def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress, workers: int) -> None:
     """Draw the maps; a verdict is worth keeping without them."""
     from toolaxis.job.output.pictures import draw_verdict
-    from toolaxis.job.planning.parallel import check_workers
 
     try:
-        draw_verdict(plan, verdict, folder, progress, check_workers(None))
+        draw_verdict(plan, verdict, folder, progress, workers)
     except Cancelled:
         say("toolaxis: stopped while drawing; the verdict is whole, pictures are missing")
     except Exception as reason:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from toolaxis.errors import Cancelled, InvalidInput, fault
 from toolaxis.feasibility.surroundings import OTHER, SKIN, TOUCHING, group_surroundings
 from toolaxis.job.files.plan_folder import read_plan, write_plan
+from toolaxis.job.output.verdict_parcel import pack_verdict, unpack_verdict
+from toolaxis.job.planning.parallel import abreast, check_workers
 from toolaxis.machine.kinematics import placement
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
@@ -29,7 +31,8 @@ from toolaxis.verify.verdict import OperationVerdict, Verdict, measure, not_meas
 Array = NDArray[np.float64]
 
 
-def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progress: Progress = NO_PROGRESS) -> Verdict:
+def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, workers: int | None = 1,
+           progress: Progress = NO_PROGRESS) -> Verdict:
     """Judge a plan by material removal.
 
     Parameters
@@ -40,6 +43,9 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
         Distance of neighbouring rays on the faces, mm; by the size of each face unless given.
     threads : int
         The verdict does not depend on it.
+    workers : int, optional
+        Processes, with one thread each where they are several; as many as there are cores for None.  The verdict does
+        not depend on it.
     progress : Progress
 
     Returns
@@ -60,10 +66,11 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, progre
                            "toolaxis verify judges a folder")
     with activate_progress(progress), tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         write_plan(plan, Path(folder))
-        return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, progress=progress)
+        return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, workers=check_workers(workers),
+                           progress=progress)
 
 
-def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
+def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2, workers: int = 1,
                 progress: Progress = NO_PROGRESS) -> Verdict:
     """Judge a plan that `read_plan` has read.
 
@@ -72,35 +79,76 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2,
     plan : Plan
     spacing, threads, progress
         As for `verify`.
+    workers : int
+        Processes, with one thread each where they are several; the verdict does not depend on it.
     """
     done = [op for op in plan.operations if op.path is not None]
+    families = _find_families(plan, done)
+    several = min(workers, len(families)) > 1
     limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+
+    def _judge(k: int, inner: Progress) -> list[OperationVerdict | bytes]:
+        found = _judge_family(plan, done, families[k], (spacing, 1 if several else threads), inner)
+        if not several:
+            return [verdict for verdict, _ in found]
+        return [verdict if task is None else pack_verdict(verdict, _faces_of(task)) for verdict, task in found]
+
+    judged = abreast(_judge, len(families), workers, progress)
+    found: dict[int, OperationVerdict] = {}
+    for k, family in enumerate(families):
+        if k in judged.faults:
+            lost = judged.faults[k].sentence
+            found.update({place: not_measured(done[place].name, limits, lost) for place in family})
+        for place, one in zip(family, judged.results.get(k, ()), strict=k in judged.results):
+            if isinstance(one, bytes):
+                one = unpack_verdict(one, _faces_of(_task_at(plan, done, place)))
+            found[place] = one
+    if judged.cancelled and not found:
+        raise Cancelled("cancelled by the user")
+    return Verdict(tuple(found[place] for place in sorted(found)),
+                   tuple(op.name for place, op in enumerate(done) if place not in found))
+
+
+def _find_families(plan: Plan, done: Sequence[Operation]) -> list[list[int]]:
+    """Places of operations that are turned copies of one, together; all others by themselves."""
     copies = {} if plan.blades is None or plan.obstacles else plan.blades.copies
+    found: dict[int, list[int]] = {}
+    for place, op in enumerate(done):
+        found.setdefault(copies.get(op.number, op.number), []).append(place)
+    return list(found.values())
+
+
+def _judge_family(plan: Plan, done: Sequence[Operation], family: Sequence[int], how: tuple[float | None, int],
+                  progress: Progress) -> list[tuple[OperationVerdict, VerificationTask | None]]:
+    """Verdicts on an operation and its turned copies, each with what was judged; without that where it failed.
+
+    how : distance of neighbouring rays, mm, and threads
+    """
+    limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
     turned = TurnedCopies()
-    # By the operation of which others are turned copies, what was measured of it, or of the first of them.
-    known: dict[int, tuple[VerificationTask, OperationMeasurement]] = {}
-    found: list[OperationVerdict] = []
-    for index, op in enumerate(done):
-        name = f"{op.name} ({index + 1} of {len(done)})"
+    known: tuple[VerificationTask, OperationMeasurement] | None = None
+    found: list[tuple[OperationVerdict, VerificationTask | None]] = []
+    for place in family:
+        op, within = done[place], progress.within(f"{done[place].name} ({place + 1} of {len(done)})")
         try:
             with activate_progress(progress):
-                task = _task(plan, op, done[index - 1] if index else None)
-                within = progress.within(name)
-                family = copies.get(op.number, op.number)
-                verdict = _as_copy(turned, task, known[family], within) if family in known else None
+                task = _task_at(plan, done, place)
+                verdict = None if known is None else _as_copy(turned, task, known, within)
                 if verdict is None:
-                    measured = measure(task, spacing, threads, within)
+                    measured = measure(task, *how, within)
                     verdict = verdict_on(task, measured, within)
-                    if copies:
-                        known.setdefault(family, (task, measured))
-                found.append(verdict)
+                    known = known or (task, measured)
+                found.append((verdict, task))
         except Cancelled:
-            if not found:
-                raise
-            return Verdict(tuple(found), tuple(op.name for op in done[index:]))
+            raise
         except Exception as reason:  # nothing is known of this operation; the others are judged
-            found.append(not_measured(op.name, limits, fault(reason).sentence))
-    return Verdict(tuple(found))
+            found.append((not_measured(op.name, limits, fault(reason).sentence), None))
+    return found
+
+
+def _faces_of(task: VerificationTask) -> tuple[Face, ...]:
+    """The faces of which a verdict has maps."""
+    return (*task.targets, *task.skin)
 
 
 def _as_copy(turned: TurnedCopies, task: VerificationTask, source: tuple[VerificationTask, OperationMeasurement],
@@ -110,6 +158,11 @@ def _as_copy(turned: TurnedCopies, task: VerificationTask, source: tuple[Verific
     measured = None if copy is None else transfer_measurement(task, source[1], copy)
     found = None if measured is None else verdict_on(task, measured, progress)
     return found if found is not None and found.passed else None
+
+
+def _task_at(plan: Plan, done: Sequence[Operation], place: int) -> VerificationTask:
+    """What the judge is to look at of one of some operations."""
+    return _task(plan, done[place], done[place - 1] if place else None)
 
 
 def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:

@@ -13,8 +13,9 @@ from toolaxis.tools.tool import Tool
 
 #: How many times the reckoned cutting time passes take, about: they run out, and their narrowest place sets the strip.
 _MADE = 1.4
-#: What other tools have to promise: a share of the cutting time that was made, and s.
-_SHARE, _SECONDS = 0.2, 8.0
+#: What other tools have to promise: a share of the cutting time that was made, and s; and on all such faces together a
+#: share of the time of the whole plan, as planning them once more takes as long as it did.
+_SHARE, _SECONDS, _OF_ALL = 0.2, 8.0, 0.1
 #: Share of a face's area that may stay open more.
 _SAME = 0.01
 
@@ -67,9 +68,10 @@ class ReckonedTimes:
         Returns
         -------
         dict of int to list of int
-            Numbers of tools, with those of faces.
+            Numbers of tools, with those of faces; empty where all of them together would save little of the plan.
         """
         found: dict[int, list[int]] = {}
+        promised = 0.0
         for number, sub_surfaces in self.reckoned.items():
             own = [op for op in made if op.face.number == number]
             if len(sub_surfaces) != 1 or any(op.failed for op in own):
@@ -79,7 +81,8 @@ class ReckonedTimes:
             spent = sum(op.seconds(inputs.feedrate, inputs.rapid) for op in own)
             if likely and spent - min(likely)[0] >= max(_SECONDS, _SHARE * spent):
                 found.setdefault(min(likely)[1], []).append(number)
-        return found
+                promised += spent - min(likely)[0]
+        return found if promised >= _OF_ALL * seconds_of(made, frozenset(), inputs) else {}
 
 
 def tools_of(operations: Iterable[Operation]) -> frozenset[Tool]:
