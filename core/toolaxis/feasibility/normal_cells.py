@@ -106,11 +106,15 @@ class NormalCells:
         """An even grid of cells, with the surface's knots among their borders."""
         u0, u1, v0, v1 = self._face.bounds
         data = self._face.surface.data
-        lines = [_grid_lines(data[0], u0, u1), _grid_lines(data[1], v0, v1)]
-        bounds = derivative_bounds(bezier_nets(data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
-        u, v = (part.ravel() for part in np.meshgrid(*(np.arange(len(line) - 1) for line in lines), indexing="ij"))
-        rect = np.stack([lines[0][u], lines[0][u + 1], lines[1][v], lines[1][v + 1]], axis=1)
-        made, _ = self._make_cells(rect, bounds.reshape(-1, 3), np.full(len(rect), bool(self._edges)))
+        lines_u = _grid_lines(data[0], u0, u1)
+        lines_v = _grid_lines(data[1], v0, v1)
+        nets = bezier_nets(data, lines_u, lines_v)
+        bounds = derivative_bounds(nets, np.diff(lines_u), np.diff(lines_v), 2)
+        low_u, low_v = _pair(lines_u[:-1], lines_v[:-1])
+        high_u, high_v = _pair(lines_u[1:], lines_v[1:])
+        rect = np.stack([low_u, high_u, low_v, high_v], axis=1)
+        crossed = np.full(len(rect), bool(self._edges))
+        made, _ = self._make_cells(rect, bounds.reshape(-1, 3), crossed)
         return made
 
     def _divided(self, cells: TrimmedFaceCells) -> tuple[TrimmedFaceCells, Index]:
@@ -148,16 +152,20 @@ class NormalCells:
         hu, hv = half.T
         off_u = bounds[:, 0] * hu + bounds[:, 1] * hv
         off_v = bounds[:, 1] * hu + bounds[:, 2] * hv
-        su, sv = lengths(d.su), lengths(d.sv)
+        su = lengths(d.su)
+        sv = lengths(d.sv)
         size = lengths(np.cross(d.su, d.sv))
         share = (off_u * sv + su * off_v + off_u * off_v) / np.where(size > 0, size, np.finfo(float).tiny)
         spread = np.where(share < 1, np.arcsin(np.minimum(share, 1.0)), np.pi)
-        across_u, across_v = 2 * su * hu + off_u * hu, 2 * sv * hv + off_v * hv
+        across_u = 2 * su * hu + off_u * hu
+        across_v = 2 * sv * hv + off_v * hv
         spread[(share >= 1) & (across_u + across_v < _SPECK) & (lengths(normal) > 0.5)] = 0.0
         # In a fold a narrow cell has no normals but those of the cells beside it.
         narrow = np.flatnonzero((share >= 1) & (np.minimum(across_u, across_v) < _SPECK))
         spread[narrow[self._face.folds(middle[narrow]).rows]] = 0.0
-        turn = half * np.column_stack([bounds[:, 0] * sv + bounds[:, 1] * su, bounds[:, 1] * sv + bounds[:, 2] * su])
+        rate_u = bounds[:, 0] * sv + bounds[:, 1] * su
+        rate_v = bounds[:, 1] * sv + bounds[:, 2] * su
+        turn = half * np.column_stack([rate_u, rate_v])
         return normal, spread, turn
 
     def _edges_meet(self, middle: Array, half: Array) -> Bools:
@@ -174,11 +182,22 @@ class NormalCells:
 
 def _meet(start: Array, end: Array, middle: Array, half: Array) -> Bools:
     """Which boxes, (n, 1, 2) middles and half sizes, any of the edges (k, 2) meets, (n,)."""
-    centre, way = (start + end) / 2 - middle, end - start
-    apart = (np.abs(centre) > np.abs(way) / 2 + half).any(axis=2)
-    cross = np.abs(centre[..., 0] * way[:, 1] - centre[..., 1] * way[:, 0])
-    apart |= cross > half[..., 0] * np.abs(way[:, 1]) + half[..., 1] * np.abs(way[:, 0])
+    centre = (start + end) / 2 - middle
+    way = end - start
+    size = np.abs(way)
+    # A box and an edge are apart where their shadows on u, on v or across the edge are.
+    apart = (np.abs(centre) > size / 2 + half).any(axis=2)
+    way_u, way_v = way.T
+    size_u, size_v = size.T
+    across = np.abs(centre[..., 0] * way_v - centre[..., 1] * way_u)
+    apart |= across > half[..., 0] * size_v + half[..., 1] * size_u
     return np.asarray((~apart).any(axis=1))
+
+
+def _pair(u: Array, v: Array) -> tuple[Array, Array]:
+    """Both coordinates, (m n,) each, of all pairs of the one and the other; v changes fastest."""
+    every_u, every_v = np.meshgrid(u, v, indexing="ij")
+    return every_u.ravel(), every_v.ravel()
 
 
 def _grid_lines(knots: Array, low: float, high: float) -> Array:

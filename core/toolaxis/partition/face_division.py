@@ -119,6 +119,31 @@ class DivisionRow(NamedTuple):
     found: Solution
     box: Corners
 
+    def name_piece(self, label: str) -> Face:
+        """The piece with a name of its own."""
+        return self.piece.trimmed(self.piece.trims, label)
+
+    @property
+    def axis(self) -> Array:
+        """The cheapest axis, (3,)."""
+        number = self.found.offers.axis[self.box]
+        return self.found.prices.axes[number]
+
+    @property
+    def feed(self) -> str:
+        """The cheapest feed direction with that axis, u or v."""
+        return "uv"[self.found.offers.feed[self.box]]
+
+    @property
+    def cost(self) -> float:
+        """What the rectangle costs with both, mm or s."""
+        return float(self.found.offers.cost[self.box])
+
+    @property
+    def length(self) -> float:
+        """Its reckoned length with both, mm."""
+        return self.divider.length(self.found, self.box)
+
 
 def name_pieces(label: str, rows: list[DivisionRow], curve: Array) -> Regions:
     """Pieces with their names and what the division reckons of each.
@@ -131,13 +156,16 @@ def name_pieces(label: str, rows: list[DivisionRow], curve: Array) -> Regions:
     curve : (m, 2) array
         As in `Regions`.
     """
-    labels = [label + letters(k) if len(rows) > 1 else label for k in range(len(rows))]
+    labels = [label]
+    if len(rows) > 1:
+        labels = [label + letters(k) for k in range(len(rows))]
+    faces = tuple(row.name_piece(name) for row, name in zip(rows, labels, strict=True))
+    axes = np.array([row.axis for row in rows]).reshape(-1, 3)
+    feeds = tuple(row.feed for row in rows)
+    lengths = tuple(row.length for row in rows)
     timed = any(row.divider.job.worth.timed is not None for row in rows)
-    return Regions(tuple(row.piece.trimmed(row.piece.trims, name) for row, name in zip(rows, labels, strict=True)),
-                   np.array([row.found.prices.axes[row.found.offers.axis[row.box]] for row in rows]).reshape(-1, 3),
-                   tuple("uv"[row.found.offers.feed[row.box]] for row in rows),
-                   tuple(row.divider.length(row.found, row.box) for row in rows), curve,
-                   tuple(float(row.found.offers.cost[row.box]) for row in rows) if timed else ())
+    seconds = tuple(row.cost for row in rows) if timed else ()
+    return Regions(faces, axes, feeds, lengths, curve, seconds)
 
 
 Given = ParamSpec("Given")

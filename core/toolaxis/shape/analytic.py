@@ -84,12 +84,35 @@ def _revolve_rows(turn: Range, knots: Array, degree: int, generatrix: Array) -> 
 
 def _revolve_derivatives(u: Array, rho: Array, z: Array) -> Derivatives:
     """Derivatives of a surface of revolution from rows (value, first, second derivative) of rho(v) and z(v)."""
-    c, s, zero = np.cos(u), np.sin(u), np.zeros_like(u)
-    radial, around = np.stack([c, s, zero], -1), np.stack([-s, c, zero], -1)
+    c = np.cos(u)
+    s = np.sin(u)
+    zero = np.zeros_like(u)
+    radial = _rows_of(c, s, zero)
+    around = _rows_of(-s, c, zero)
     up = np.array([0.0, 0.0, 1.0])
-    (r0, r1, r2), (z0, z1, z2) = rho[..., None], z[..., None]
-    return Derivatives(r0 * radial + z0 * up, r0 * around, r1 * radial + z1 * up,
-                       -r0 * radial, r1 * around, r2 * radial + z2 * up)
+    r0, r1, r2 = rho[..., None]
+    z0, z1, z2 = z[..., None]
+    return Derivatives(
+        point=r0 * radial + z0 * up,
+        su=r0 * around,
+        sv=r1 * radial + z1 * up,
+        suu=-r0 * radial,
+        suv=r1 * around,
+        svv=r2 * radial + z2 * up)
+
+
+def _rows_of(x: Array, y: Array, z: Array) -> Array:
+    """Vectors, (n, 3), from their coordinates, (n,) each."""
+    return np.stack([x, y, z], axis=-1)
+
+
+def _quadratic_controls(limits: Range) -> tuple[Array, Array]:
+    """Control values, (3,) each, of x and of x^2 over a range as polynomials of degree 2."""
+    low, high = limits
+    linear = np.array([low, 0.5 * (low + high), high])
+    # The polar form of x^2, which is x y, at the ends: its values are the control points.
+    squares = np.array([low * low, low * high, high * high])
+    return linear, squares
 
 
 @dataclass(frozen=True)
@@ -328,10 +351,16 @@ class HyperbolicParaboloid:
     def evaluate(self, uv: Array) -> Derivatives:
         """Position and derivatives at (n, 2) parameters, mm."""
         u, v = np.asarray(uv, dtype=float).T
-        zero, one, c = np.zeros_like(u), np.ones_like(u), self.divisor
-        rows = ((u, v, (v**2 - u**2) / c), (one, zero, -2 * u / c), (zero, one, 2 * v / c),
-                (zero, zero, -2 * one / c), (zero, zero, zero), (zero, zero, 2 * one / c))
-        return Derivatives(*(np.stack(row, axis=-1) for row in rows))
+        zero = np.zeros_like(u)
+        one = np.ones_like(u)
+        c = self.divisor
+        return Derivatives(
+            point=_rows_of(u, v, (v**2 - u**2) / c),
+            su=_rows_of(one, zero, -2 * u / c),
+            sv=_rows_of(zero, one, 2 * v / c),
+            suu=_rows_of(zero, zero, -2 * one / c),
+            suv=_rows_of(zero, zero, zero),
+            svv=_rows_of(zero, zero, 2 * one / c))
 
     def principal(self, uv: Array) -> tuple[Array, Array]:
         """Principal curvatures k1 >= k2, each (n,), 1/mm, from mean and Gaussian curvature of a graph."""
@@ -343,11 +372,15 @@ class HyperbolicParaboloid:
 
     def nurbs(self) -> NurbsSurface:
         """The same surface as a polynomial B-spline of degree (2, 2)."""
-        x, y = (np.array([low, 0.5 * (low + high), high]) for low, high in self.domain)
-        xx, yy = (np.array([low * low, low * high, high * high]) for low, high in self.domain)
+        x, xx = _quadratic_controls(self.u_range)
+        y, yy = _quadratic_controls(self.v_range)
         z = (yy[None, :] - xx[:, None]) / self.divisor
-        points = np.stack([*np.meshgrid(x, y, indexing="ij"), z, np.ones((3, 3))], axis=-1)
-        return NurbsSurface(np.repeat(self.u_range, 3), np.repeat(self.v_range, 3), points, (2, 2))
+        columns, rows = np.meshgrid(x, y, indexing="ij")
+        weights = np.ones((3, 3))
+        control = np.stack([columns, rows, z, weights], axis=-1)
+        knots_u = np.repeat(self.u_range, 3)
+        knots_v = np.repeat(self.v_range, 3)
+        return NurbsSurface(knots_u, knots_v, control, (2, 2))
 
     def parameters(self, uv: Array) -> Array:
         """Parameters of `nurbs` at (n, 2) parameters of this surface."""

@@ -131,13 +131,19 @@ class SeenFace:
         """Range of each parameter in which the face is closed, (2,); infinite where it is open."""
         (u0, u1), (v0, v1) = self.face.surface.domain
         share = np.linspace(0.0, 1.0, 5)
-        u, v = u0 + (u1 - u0) * share, v0 + (v1 - v0) * share
-        found = []
-        for low, high, span in ((np.column_stack([np.full(5, u0), v]), np.column_stack([np.full(5, u1), v]), u1 - u0),
-                                (np.column_stack([u, np.full(5, v0)]), np.column_stack([u, np.full(5, v1)]), v1 - v0)):
-            apart = np.linalg.norm(self.face.evaluate(low).point - self.face.evaluate(high).point, axis=1)
-            found.append(span if (apart <= _SAME * self.face.diagonal).all() else np.inf)
-        return np.array(found)
+        u = u0 + (u1 - u0) * share
+        v = v0 + (v1 - v0) * share
+        closed_along_u = self._is_closed(_line_at(0, u0, v), _line_at(0, u1, v))
+        closed_along_v = self._is_closed(_line_at(1, v0, u), _line_at(1, v1, u))
+        period_u = u1 - u0 if closed_along_u else np.inf
+        period_v = v1 - v0 if closed_along_v else np.inf
+        return np.array([period_u, period_v])
+
+    def _is_closed(self, low: Array, high: Array) -> bool:
+        """Whether the face comes together at these parameters, (n, 2) each, of two opposite borders."""
+        gap = self.face.evaluate(low).point - self.face.evaluate(high).point
+        apart = np.linalg.norm(gap, axis=1)
+        return bool((apart <= _SAME * self.face.diagonal).all())
 
     def find(self, places: Array) -> Array:
         """Parameters (n, 2) of the face at places of the plane, by Newton's method; beyond its border too.
@@ -245,9 +251,13 @@ class SeenFace:
         (ux, uy), (vx, vy) = np.moveaxis(_rates_with_place(a, b), 0, -1)
         sx = d.su * ux[:, None] + d.sv * vx[:, None]
         sy = d.su * uy[:, None] + d.sv * vy[:, None]
+        with_x, with_y = (ux, vx), (uy, vy)
         second = []
-        for (u1, v1), (u2, v2) in (((ux, vx), (ux, vx)), ((ux, vx), (uy, vy)), ((uy, vy), (uy, vy))):
-            bend = (d.suu * (u1 * u2)[:, None] + d.suv * (u1 * v2 + v1 * u2)[:, None] + d.svv * (v1 * v2)[:, None])
+        for (u1, v1), (u2, v2) in ((with_x, with_x), (with_x, with_y), (with_y, with_y)):
+            twice_u = (u1 * u2)[:, None]
+            mixed = (u1 * v2 + v1 * u2)[:, None]
+            twice_v = (v1 * v2)[:, None]
+            bend = d.suu * twice_u + d.suv * mixed + d.svv * twice_v
             aside = bend @ self.rows.T  # places in the plane move evenly: what the bend moves aside, u and v take back
             second.append(bend - sx * aside[:, :1] - sy * aside[:, 1:])
         return Derivatives(d.point, sx, sy, *second)
@@ -258,6 +268,14 @@ class SeenFace:
             if np.isfinite(self.periods[k]):
                 uv[:, k] = low[k] + np.mod(uv[:, k] - low[k], self.periods[k])
         return uv
+
+
+def _line_at(fixed: int, value: float, other: Array) -> Array:
+    """Parameters, (n, 2), of which one has a fixed value."""
+    uv = np.empty((len(other), 2))
+    uv[:, fixed] = value
+    uv[:, 1 - fixed] = other
+    return uv
 
 
 def _rates_with_place(a: Array, b: Array) -> Array:
@@ -273,6 +291,9 @@ def _solve(a: Array, b: Array, right: Array) -> Array:
     det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     size = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
     good = np.abs(det) > PARALLEL * size
-    found = np.column_stack([right[:, 0] * b[:, 1] - right[:, 1] * b[:, 0],
-                             a[:, 0] * right[:, 1] - a[:, 1] * right[:, 0]])
-    return np.asarray(np.where(good[:, None], found / np.where(good, det, 1.0)[:, None], 0.0))
+    # Cramer's rule.
+    over_x = right[:, 0] * b[:, 1] - right[:, 1] * b[:, 0]
+    over_y = a[:, 0] * right[:, 1] - a[:, 1] * right[:, 0]
+    divisor = np.where(good, det, 1.0)
+    found = np.column_stack([over_x, over_y]) / divisor[:, None]
+    return np.asarray(np.where(good[:, None], found, 0.0))

@@ -244,9 +244,14 @@ def standing(spans: PathMotions) -> Array:
     """
     way = np.linalg.norm(spans.end - spans.start, axis=1) / NEAR_MM
     turn = angle_between(spans.before, spans.after) / NEAR
-    parts, _ = spans.split(np.maximum(np.ceil(np.maximum(way, turn)), 2).astype(np.int64))
-    last = np.append((parts.end[:-1] != parts.start[1:]).any(axis=1), len(parts.end) > 0)
-    return motions(np.concatenate([parts.start, parts.end[last]]), np.concatenate([parts.before, parts.after[last]]))
+    count = np.maximum(np.ceil(np.maximum(way, turn)), 2)
+    parts, _ = spans.split(count.astype(np.int64))
+    # The end of a part is the start of the next one, but for the last part of motions that hang together.
+    interrupted = (parts.end[:-1] != parts.start[1:]).any(axis=1)
+    last = np.append(interrupted, len(parts.end) > 0)
+    tips = np.concatenate([parts.start, parts.end[last]])
+    axes = np.concatenate([parts.before, parts.after[last]])
+    return motions(tips, axes)
 
 
 def _touching(tool: Tool, group: CheckSurfaces, spans: PathMotions, allowance: float) -> PathCheck:

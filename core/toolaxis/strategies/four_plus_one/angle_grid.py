@@ -39,10 +39,15 @@ class Nodes:
     def along(self) -> Array:
         """Parameters along the passes, (i,)."""
         a0, a1, s0, s1 = self.chart.bounds
-        uv = self.chart.uv(np.linspace(a0, a1, NODES[0]), np.full(NODES[0], (s0 + s1) / 2))
-        length = float(np.linalg.norm(np.diff(self.chart.face.evaluate(uv).point, axis=0), axis=1).sum())
-        more = 0.0 if self.chart.closed(np.array([(s0 + s1) / 2]))[0] else BEYOND * self.radius * (a1 - a0) / length
-        return np.linspace(a0 - more, a1 + more, NODES[0])
+        middle = (s0 + s1) / 2
+        count = NODES[0]
+        uv = self.chart.uv(np.linspace(a0, a1, count), np.full(count, middle))
+        points = self.chart.face.evaluate(uv).point
+        gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        length = float(gaps.sum())
+        closed = self.chart.closed(np.array([middle]))[0]
+        more = 0.0 if closed else BEYOND * self.radius * (a1 - a0) / length
+        return np.linspace(a0 - more, a1 + more, count)
 
     @cached_property
     def step(self) -> Array:
@@ -52,7 +57,7 @@ class Nodes:
     @cached_property
     def uv(self) -> Array:
         """Parameters of all nodes, (i k, 2)."""
-        return self.chart.uv(*(part.ravel() for part in np.meshgrid(self.along, self.step, indexing="ij")))
+        return self._grid_uv(self.along, self.step)
 
     @cached_property
     def points(self) -> Array:
@@ -77,24 +82,43 @@ class Nodes:
         """Length of each pass on the face, (k,) mm."""
         _, _, s0, s1 = self.chart.bounds
         shares = (np.arange(_PARTS) + 0.5) / _PARTS
-        along = (self.along[:-1, None] + np.diff(self.along)[:, None] * shares).ravel()
-        step = np.clip(self.step, s0 + _EDGE * (s1 - s0), s1 - _EDGE * (s1 - s0))
-        uv = self.chart.uv(*(part.ravel() for part in np.meshgrid(along, step, indexing="ij")))
-        share = self.chart.face.contains(uv).reshape(NODES[0] - 1, _PARTS, NODES[1]).mean(axis=1)
-        return np.asarray((np.linalg.norm(np.diff(self.points, axis=0), axis=2) * share).sum(axis=0))
+        gaps = np.diff(self.along)[:, None]
+        along = (self.along[:-1, None] + gaps * shares).ravel()
+        inwards = _EDGE * (s1 - s0)
+        step = np.clip(self.step, s0 + inwards, s1 - inwards)
+        on_face = self.chart.face.contains(self._grid_uv(along, step))
+        share = on_face.reshape(NODES[0] - 1, _PARTS, NODES[1]).mean(axis=1)
+        way = np.linalg.norm(np.diff(self.points, axis=0), axis=2)
+        return np.asarray((way * share).sum(axis=0))
 
     @cached_property
     def fine(self) -> tuple[Array, Array]:
         """Parameters along and across of places on the face and between the nodes, (m,) each."""
-        rows = [np.linspace(each[0], each[-1], _FINE * (len(each) - 1) + 1) for each in (self.along, self.step)]
-        near = [np.minimum((np.arange(len(each)) + _FINE // 2) // _FINE, count - 1) for each, count in
-                zip(rows, NODES, strict=True)]
-        along, step = (part.ravel() for part in np.meshgrid(*rows, indexing="ij"))
-        some = self.counts[np.ix_(*near)].ravel()
+        fine_along, near_along = _refine(self.along)
+        fine_step, near_step = _refine(self.step)
+        along, step = np.meshgrid(fine_along, fine_step, indexing="ij")
+        some = self.counts[np.ix_(near_along, near_step)]
         return along[some], step[some]
 
     @cached_property
     def ways(self) -> tuple[Array, Array]:
         """Places of the nodes in mm, along and across."""
-        wide = [float(np.linalg.norm(np.diff(self.points, axis=axis), axis=2).sum(axis=axis).mean()) for axis in (0, 1)]
-        return np.linspace(0.0, wide[0], NODES[0]), np.linspace(0.0, wide[1], NODES[1])
+        along, across = (self._mean_length(axis) for axis in (0, 1))
+        return np.linspace(0.0, along, NODES[0]), np.linspace(0.0, across, NODES[1])
+
+    def _grid_uv(self, along: Array, step: Array) -> Array:
+        """Parameters of the face at all pairs of the one and the other, (i k, 2)."""
+        every_along, every_step = np.meshgrid(along, step, indexing="ij")
+        return self.chart.uv(every_along.ravel(), every_step.ravel())
+
+    def _mean_length(self, axis: int) -> float:
+        """Mean length of the lines through the nodes along the passes (0) or across them (1), mm."""
+        gaps = np.linalg.norm(np.diff(self.points, axis=axis), axis=2)
+        return float(gaps.sum(axis=axis).mean())
+
+
+def _refine(line: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Places between the nodes of a line, `_FINE` to a gap, and the number of the node next to each."""
+    places = np.linspace(line[0], line[-1], _FINE * (len(line) - 1) + 1)
+    nearest = (np.arange(len(places)) + _FINE // 2) // _FINE
+    return places, np.minimum(nearest, len(line) - 1)
