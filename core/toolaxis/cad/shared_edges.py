@@ -45,7 +45,7 @@ def borders_of(pairs: Iterable[tuple[FaceRecord, KernelFace]]) -> tuple[list[Bor
 def _side(user: _User) -> OpenEdge:
     record, edge = user
     share, points = _polyline(edge)
-    return OpenEdge(record.number, points, _parameters(user, share), edge.forward ^ record.turned)
+    return OpenEdge(record.number, points, _parameters(user, share), _is_left(user))
 
 
 def _border(one: _User, other: _User) -> Border:
@@ -54,9 +54,16 @@ def _border(one: _User, other: _User) -> Border:
     if _apart(one, other, np.linspace(0.0, 1.0, CHECKED)) > APART:
         share = _between(share, points)
         points = edge.points(share)
-    first, second = (_parameters(user, share) for user in (one, other))
-    lefts = [user[1].forward ^ user[0].turned for user in (one, other)]
-    return Border((record.number, other[0].number), points, first, second, lefts[0], lefts[1])
+    faces = (record.number, other[0].number)
+    first = _parameters(one, share)
+    second = _parameters(other, share)
+    return Border(faces, points, first, second, _is_left(one), _is_left(other))
+
+
+def _is_left(user: _User) -> bool:
+    """Whether the face lies to the left of its edge."""
+    record, edge = user
+    return edge.forward ^ record.turned
 
 
 def _apart(one: _User, other: _User, share: Array) -> float:
@@ -69,9 +76,11 @@ def _between(share: Array, points: Array) -> Array:
     """Shares with more between them, so that places are no farther apart than what two faces miss changes over."""
     far = np.linalg.norm(np.diff(points, axis=0), axis=1)
     step = max(SPACING, float(far.sum()) / MOST)
-    count = np.maximum(np.ceil(far / step), 1).astype(np.int64)
-    inner = [a + (b - a) * np.arange(n) / n for a, b, n in zip(share[:-1], share[1:], count, strict=True)]
-    return np.concatenate([*inner, share[-1:]])
+    counts = np.maximum(np.ceil(far / step), 1).astype(np.int64)
+    pieces = []
+    for low, high, count in zip(share[:-1], share[1:], counts, strict=True):
+        pieces.append(low + (high - low) * np.arange(count) / count)
+    return np.concatenate([*pieces, share[-1:]])
 
 
 def _polyline(edge: KernelEdge) -> tuple[Array, Array]:

@@ -34,10 +34,10 @@ class JointMotion:
     def knots(self) -> tuple[Array, Array, Array]:
         """Positions, velocities and accelerations where the pieces meet, (k + 1, m) each."""
         t = self.durations[:, None]
-        zero = np.zeros((1, self.jerks.shape[1]))
-        a = np.concatenate([zero, np.cumsum(t * self.jerks, axis=0)])
-        v = np.concatenate([zero, np.cumsum(t * (a[:-1] + t * self.jerks / 2), axis=0)])
-        q = np.concatenate([zero, np.cumsum(t * (v[:-1] + t * (a[:-1] / 2 + t * self.jerks / 6)), axis=0)])
+        jerk = self.jerks
+        a = _sum_up(t * jerk)
+        v = _sum_up(t * (a[:-1] + t * jerk / 2))
+        q = _sum_up(t * (v[:-1] + t * (a[:-1] / 2 + t * jerk / 6)))
         return q + self.start, v, a
 
     def at(self, times: ArrayLike) -> tuple[Array, Array, Array, Array]:
@@ -52,9 +52,12 @@ class JointMotion:
         begins = np.concatenate([[0.0], np.cumsum(self.durations)])
         which = np.clip(np.searchsorted(begins, t, side="right") - 1, 0, len(self.durations) - 1)
         q, v, a = (state[which] for state in self.knots())
-        gone, jerk = (t - begins[which])[:, None], self.jerks[which]
-        return (q + gone * (v + gone * (a / 2 + gone * jerk / 6)), v + gone * (a + gone * jerk / 2), a + gone * jerk,
-                jerk)
+        gone = (t - begins[which])[:, None]
+        jerk = self.jerks[which]
+        position = q + gone * (v + gone * (a / 2 + gone * jerk / 6))
+        velocity = v + gone * (a + gone * jerk / 2)
+        acceleration = a + gone * jerk
+        return position, velocity, acceleration, jerk
 
     def extremes(self) -> tuple[Array, Array, Array]:
         """Greatest size of velocity, acceleration and jerk of each axis, (m,) each; exact, not sampled."""
@@ -66,3 +69,9 @@ class JointMotion:
         between = np.where(inside, v[:-1] + turning * (a[:-1] + turning * self.jerks / 2), 0.0)
         velocity = np.maximum(np.abs(v).max(axis=0), np.abs(between).max(axis=0))
         return velocity, np.abs(a).max(axis=0), np.abs(self.jerks).max(axis=0)
+
+
+def _sum_up(changes: Array) -> Array:
+    """Values at both ends of all pieces, (k + 1, m), from zero, by what each changes over a piece, (k, m)."""
+    zero = np.zeros((1, changes.shape[1]))
+    return np.concatenate([zero, np.cumsum(changes, axis=0)])

@@ -129,10 +129,13 @@ class Mounting:
     def _worst(self, rotary: Array) -> Array:
         """By how much the tips to be reached leave the travel at rotary angles, (k,) mm."""
         count, n = len(rotary), len(self.reached)
-        at = linear_coordinates(self.machine, np.tile(self.reached, (count, 1)), np.repeat(rotary, n, axis=0),
-                                float(self.tool_length or 0.0), self.table_from_part)
-        out = np.max([axis.excess(at[:, i]) for i, axis in enumerate(self.machine.linear)], axis=0)
-        return np.asarray(out.reshape(count, n).max(axis=1, initial=0.0))
+        tips = np.tile(self.reached, (count, 1))
+        angles = np.repeat(rotary, n, axis=0)
+        length = float(self.tool_length or 0.0)
+        at = linear_coordinates(self.machine, tips, angles, length, self.table_from_part)
+        beyond = [axis.excess(at[:, i]) for i, axis in enumerate(self.machine.linear)]
+        worst_axis = np.max(beyond, axis=0)
+        return np.asarray(worst_axis.reshape(count, n).max(axis=1, initial=0.0))
 
     def apart(self, rotary: Array) -> tuple[Array, list[tuple[str, str]]]:
         """How far bodies of both sides are apart with the outermost of the tips to be reached, (n, k) mm, and their

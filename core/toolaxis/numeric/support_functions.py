@@ -59,26 +59,37 @@ class ConvexBodies(NamedTuple):
         ways : (n, 3) array
             Unit vectors; n is k, or any where k is 1.
         """
-        along = np.einsum("kjc,nc->nj", self.axis, ways) if len(self.axis) == 1 else (self.axis * ways[:, None]).sum(-1)
-        height = np.einsum("kjc,nc->nj", self.centre, ways) if len(self.centre) == 1 else (
-            self.centre * ways[:, None]).sum(-1)
+        count = len(ways)
+        every = np.arange(count)
+        along = _project(self.axis, ways)
+        height = _project(self.centre, ways)
         across = np.sqrt(np.maximum(1.0 - along**2, 0.0))
         best = np.argmax(height + self.radius * across + self.ball, axis=1)
-        row = np.zeros(len(ways), dtype=int) if len(self.centre) == 1 else np.arange(len(ways))
-        axis, slant = self.axis[row, best], along[np.arange(len(ways)), best][:, None]
-        rim = ways - slant * axis
+        row = np.zeros(count, dtype=int) if len(self.centre) == 1 else every
+        slant = along[every, best][:, None]
+        rim = ways - slant * self.axis[row, best]
         size = lengths(rim)[:, None]
-        rim = np.where(size > _ALONG, rim / np.where(size > _ALONG, size, 1.0), 0.0)
-        sides = np.where(np.einsum("nic,nc->ni", np.broadcast_to(self.spread, (len(ways), 3, 3)), ways) >= 0, 1.0, -1.0)
-        return np.asarray(self.centre[row, best] + self.radius[row, best][:, None] * rim
-                          + self.ball[row, best][:, None] * ways
-                          + np.einsum("ni,nic->nc", sides, np.broadcast_to(self.spread, (len(ways), 3, 3))))
+        leans = size > _ALONG
+        rim = np.where(leans, rim / np.where(leans, size, 1.0), 0.0)
+        spread = np.broadcast_to(self.spread, (count, 3, 3))
+        sides = np.where(np.einsum("nic,nc->ni", spread, ways) >= 0, 1.0, -1.0)
+        moved = np.einsum("ni,nic->nc", sides, spread)
+        radius = self.radius[row, best][:, None]
+        ball = self.ball[row, best][:, None]
+        return np.asarray(self.centre[row, best] + radius * rim + ball * ways + moved)
 
     @property
     def reach(self) -> Array:
         """Radius about the origin that holds each body, (k,) mm."""
         far = np.linalg.norm(self.centre, axis=2) + self.radius + self.ball
         return np.asarray(far.max(axis=1) + np.linalg.norm(self.spread, axis=2).sum(axis=1))
+
+
+def _project(vectors: Array, ways: Array) -> Array:
+    """Coordinates along directions (n, 3) of the vectors of each body (k, j, 3), (n, j); a single body has all."""
+    if len(vectors) == 1:
+        return np.asarray(np.einsum("kjc,nc->nj", vectors, ways))
+    return np.asarray((vectors * ways[:, None]).sum(-1))
 
 
 def boxes(low: ArrayLike, high: ArrayLike) -> ConvexBodies:

@@ -117,10 +117,12 @@ def lean_ratios(table: Array, along: Array, across: Array) -> Array:
     x = 0.5 * (np.sqrt(sine) + 1 - np.sqrt(1 - sine**2)) * (table.shape[0] - 1)
     cosine = np.abs(along) / np.where(lean > 0, lean, 1.0)
     y = np.sqrt(np.minimum(cosine, 1.0)) * (table.shape[1] - 1)
-    i, j = (np.minimum(p.astype(int), n - 2) for p, n in ((x, table.shape[0]), (y, table.shape[1])))
+    i = np.minimum(x.astype(int), table.shape[0] - 2)
+    j = np.minimum(y.astype(int), table.shape[1] - 2)
     x, y = x - i, y - j
-    return np.asarray((table[i, j] * (1 - x) + table[i + 1, j] * x) * (1 - y)
-                      + (table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x) * y)
+    low = table[i, j] * (1 - x) + table[i + 1, j] * x
+    high = table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x
+    return np.asarray(low * (1 - y) + high * y)
 
 
 def lean_ratios_of(table: Array, forms: Array, axis: Array) -> Array:

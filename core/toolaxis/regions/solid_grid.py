@@ -82,13 +82,21 @@ class PartSolid:
 
 def _make_grid(bodies: tuple[tuple[Face, ...], ...], tree: ReachTree) -> SolidGrid | None:
     own = [face for body in bodies for face in body]
-    low, high = np.min([face.box[0] for face in own], axis=0), np.max([face.box[1] for face in own], axis=0)
-    size = max(float(np.cbrt(np.prod(np.maximum(high - low, 1e-3 * (high - low).max())) / _MOST)), _LEAST)
-    cells = np.full(np.ceil((high - low) / size).astype(int) + 2 * _BEYOND, NO_BORDER, dtype=np.uint8)
+    low = np.min([face.box[0] for face in own], axis=0)
+    high = np.max([face.box[1] for face in own], axis=0)
+    extent = high - low
+    # A flat part has a volume too, so that its cells are not all too small.
+    volume = np.prod(np.maximum(extent, 1e-3 * extent.max()))
+    size = max(float(np.cbrt(volume / _MOST)), _LEAST)
+    shape = np.ceil(extent / size).astype(int) + 2 * _BEYOND
+    cells = np.full(shape, NO_BORDER, dtype=np.uint8)
     origin = low - _BEYOND * size
-    mark_borders(tree, np.flatnonzero(tree.link[:, 3] >= 0), cells, origin, size)
+    leaves = np.flatnonzero(tree.link[:, 3] >= 0)
+    mark_borders(tree, leaves, cells, origin, size)
     material = _material(bodies, cells, origin, size)
-    return pack_grid(material, cells == HELD, origin, size) if material.any() else None
+    if not material.any():
+        return None
+    return pack_grid(material, cells == HELD, origin, size)
 
 
 def _material(bodies: tuple[tuple[Face, ...], ...], cells: NDArray[np.uint8], origin: Array, size: float) -> Bools:

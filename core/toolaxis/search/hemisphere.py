@@ -30,6 +30,8 @@ SPACING = radians(10)
 _BEAM = (14, 10, 8)
 #: Fewer where normals and limits leave little: one for so many first axes, but not below the second number.
 _SHARE, _NARROWEST = 9, 6
+#: Free axes of equal price that are asked for their clearance, those nearest to the mean normal; and how many are left.
+_NEAR_MEAN, _TIED = 48, 12
 #: How often all free axes may be refused by closer looks before the search ends without one.
 _HUNTS = 3
 #: Lobes are at least so far apart, rad.
@@ -127,12 +129,16 @@ def ties(ledger: AxisTable) -> list[CountedAxis]:
     """
     free = np.flatnonzero(np.isfinite(ledger.price))
     away = round_significant(angle_between(ledger.axes[free], ledger.feasibility.normals.mean))
-    free = free[np.argsort(away, kind="stable")][:48]
-    room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in free])
-    order = free[np.lexsort((np.arange(len(free)), -np.round(room / _SHARES)))][:12]
-    best = ledger.values[order[0]].argmin()
-    value, passes, length = ledger.count(ledger.axes[order[0]], int(best), float(ledger.unreached[order[0]]))
-    return [CountedAxis(ledger.axes[i], int(best), value, passes, length, float(ledger.unreached[i])) for i in order]
+    nearest = free[np.argsort(away, kind="stable")][:_NEAR_MEAN]
+    room = np.array([ledger.feasibility.room(ledger.axes[i]) for i in nearest])
+    most_room_first = -np.round(room / _SHARES)
+    rank = np.arange(len(nearest))
+    order = nearest[np.lexsort((rank, most_room_first))][:_TIED]
+    # They all cost the same: one count is that of all.
+    first = order[0]
+    feed = int(ledger.values[first].argmin())
+    value, passes, length = ledger.count(ledger.axes[first], feed, float(ledger.unreached[first]))
+    return [CountedAxis(ledger.axes[i], feed, value, passes, length, float(ledger.unreached[i])) for i in order]
 
 
 def probe(ledger: AxisTable, most: int) -> None:

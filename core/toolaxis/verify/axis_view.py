@@ -81,8 +81,10 @@ def view_along(maps: Sequence[SurfaceMap], x: ArrayLike, y: ArrayLike, origin: A
     empty = np.bincount(index, minlength=rows * columns) == 0
     distance, near = cKDTree(flat).query(centres[empty], distance_upper_bound=_REACH * spacing + 0.5 * cell)
     found = np.isfinite(distance)
+    remaining = np.concatenate([one.remaining for one in maps])
+    gouge = np.concatenate([one.gouge for one in maps])
     views = []
-    for value in (np.concatenate([one.remaining for one in maps]), np.concatenate([one.gouge for one in maps])):
+    for value in (remaining, gouge):
         cells = np.full(rows * columns, -np.inf)
         np.maximum.at(cells, index, value)
         cells[np.flatnonzero(empty)[found]] = value[near[found]]
@@ -104,11 +106,18 @@ def coarser(view: RestMaterialView, most: int) -> RestMaterialView:
     if step <= 1:
         return view
 
-    def _pool_cells(cells: Cells) -> Cells:
-        high, wide = -(-rows // step) * step, -(-columns // step) * step
-        padded = np.full((high, wide), -np.inf, dtype=np.float32)
-        padded[:rows, :columns] = np.where(np.isnan(cells), -np.inf, cells)
-        most_of = padded.reshape(high // step, step, wide // step, step).max(axis=(1, 3))
-        return np.where(most_of == -np.inf, np.nan, most_of).astype(np.float32)
+    scallop = _pool_cells(view.scallop, step)
+    gouge = _pool_cells(view.gouge, step)
+    return RestMaterialView(view.corner, view.cell * step, scallop, gouge)
 
-    return RestMaterialView(view.corner, view.cell * step, _pool_cells(view.scallop), _pool_cells(view.gouge))
+
+def _pool_cells(cells: Cells, step: int) -> Cells:
+    """The greatest value of every square of so many cells each way; NaN where none of them has one."""
+    rows, columns = cells.shape
+    high = ceil(rows / step)
+    wide = ceil(columns / step)
+    padded = np.full((high * step, wide * step), -np.inf, dtype=np.float32)
+    padded[:rows, :columns] = np.where(np.isnan(cells), -np.inf, cells)
+    squares = padded.reshape(high, step, wide, step)
+    greatest = squares.max(axis=(1, 3))
+    return np.where(greatest == -np.inf, np.nan, greatest).astype(np.float32)

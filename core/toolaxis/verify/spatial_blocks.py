@@ -36,9 +36,11 @@ def curve_order(points: Array) -> Index:
     (m,) array of int
     """
     low = points.min(axis=0)
-    size = max(float((points.max(axis=0) - low).max()), 1e-30)
+    high = points.max(axis=0)
+    size = max(float((high - low).max()), 1e-30)
     cells = ((points - low) / size * (2**_BITS - 1)).astype(np.uint64)
-    code = _spread(cells[:, 0]) | (_spread(cells[:, 1]) << np.uint64(1)) | (_spread(cells[:, 2]) << np.uint64(2))
+    x, y, z = (_spread(cells[:, axis]) for axis in range(3))
+    code = x | (y << np.uint64(1)) | (z << np.uint64(2))
     return np.argsort(code, kind="stable")
 
 
@@ -59,12 +61,16 @@ def balls(points: Array, size: int = BLOCK) -> tuple[Array, Index]:
     first : (b + 1,) array of int
         Where each block begins.
     """
-    first = np.append(np.arange(0, len(points), size), len(points)).astype(np.int64)
-    low, high = (f.reduceat(points, first[:-1], axis=0) for f in (np.minimum, np.maximum))
+    count = len(points)
+    first = np.append(np.arange(0, count, size), count).astype(np.int64)
+    begin = first[:-1]
+    low = np.minimum.reduceat(points, begin, axis=0)
+    high = np.maximum.reduceat(points, begin, axis=0)
     centre = 0.5 * (low + high)
-    owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    far = np.maximum.reduceat(np.linalg.norm(points - centre[owner], axis=1), first[:-1])
-    return np.ascontiguousarray(np.column_stack([centre, far])), first
+    owner = np.repeat(np.arange(len(begin)), np.diff(first))
+    away = np.linalg.norm(points - centre[owner], axis=1)
+    radius = np.maximum.reduceat(away, begin)
+    return np.ascontiguousarray(np.column_stack([centre, radius])), first
 
 
 class Blocks(NamedTuple):

@@ -93,10 +93,16 @@ def path_edges(path: ToolPath, *kinds: Motion, frame: WorkCoordinates | None = N
     """
     rows = path.cc if frame is None else frame.from_part(path.cc)
     wanted = np.isin(path.kind, kinds or (Motion.CUT,))
-    starts = np.flatnonzero(wanted & ~np.concatenate([[False], wanted[:-1]]))
-    ends = np.flatnonzero(wanted & ~np.concatenate([wanted[1:], [False]]))
-    lines = [rows[max(a - 1, 0):b + 1] for a, b in zip(starts, ends, strict=True)]
-    return [polyline_edge(line) for line in lines if np.ptp(line, axis=0).max() > 2 * _ONE]
+    one_before = np.concatenate([[False], wanted[:-1]])
+    one_after = np.concatenate([wanted[1:], [False]])
+    starts = np.flatnonzero(wanted & ~one_before)
+    ends = np.flatnonzero(wanted & ~one_after)
+    edges = []
+    for start, end in zip(starts, ends, strict=True):
+        line = rows[max(start - 1, 0):end + 1]  # a motion begins at the point before
+        if np.ptp(line, axis=0).max() > 2 * _ONE:
+            edges.append(polyline_edge(line))
+    return edges
 
 
 def compound_of(shapes: Sequence[Any]) -> Any:
@@ -235,7 +241,9 @@ def _runs(face: Face, loop: Array) -> list[Array]:
     rows = loop[simplify_loop(np.hstack([d.point, loop * scale]), 0.25 * BORDER)]
     ahead = np.roll(rows, -1, axis=0) - rows
     iso = (np.abs(ahead) <= 1e-12 * np.maximum(np.abs(rows), 1.0)).any(axis=1)
-    size, heading = np.hypot(*(ahead * scale).T), np.arctan2(*(ahead * scale).T)
+    scaled_u, scaled_v = (ahead * scale).T
+    size = np.hypot(scaled_u, scaled_v)
+    heading = np.arctan2(scaled_u, scaled_v)
     turn = np.abs((heading - np.roll(heading, 1) + np.pi) % (2 * np.pi) - np.pi)
     bulge = turn * np.maximum(size, np.roll(size, 1)) / 8  # height over the chord of an arc that turns so much
     corner = (turn > _CORNER) | (bulge > BORDER) | iso | np.roll(iso, 1)
@@ -257,16 +265,32 @@ def _edge(face: Face, surface: Any, run: Array, ends: tuple[Any, Any]) -> Any:
     return edge
 
 
+def _chord_lengths(rows: Array, scale: Array) -> Array:
+    """Lengths of the chords between parameters (n, 2), (n - 1,) mm."""
+    return np.asarray(np.linalg.norm(np.diff(rows, axis=0) * scale, axis=1))
+
+
+def _divide_chords(run: Array, size: Array) -> Array:
+    """The points of a stretch, with more on chords that are much longer than a neighbour."""
+    counts = np.ones(1, dtype=int)
+    if len(run) > 2:
+        before = np.insert(size[:-1], 0, np.inf)
+        after = np.append(size[1:], np.inf)
+        shorter = np.minimum(after, before)
+        counts = np.clip(np.ceil(size / (2 * shorter)).astype(int), 1, _MOST_CHORDS)
+    pieces = []
+    for start, end, count in zip(run[:-1], run[1:], counts, strict=True):
+        share = np.arange(count)[:, None] / count
+        pieces.append(start + share * (end - start))
+    return np.vstack([*pieces, run[-1:]])
+
+
 def _smooth(face: Face, run: Array) -> tuple[Any, float]:
     """A curve in the parameters through the points of a stretch, from 0 to its length in mm, and that length."""
     d = face.evaluate(run)
     scale = np.maximum([np.linalg.norm(rows, axis=1).mean() for rows in (d.su, d.sv)], 1e-12)
-    size = np.linalg.norm(np.diff(run, axis=0) * scale, axis=1)
-    counts = np.ceil(size / (2 * np.minimum(np.append(size[1:], np.inf), np.insert(size[:-1], 0, np.inf)))).astype(int)
-    counts = np.clip(counts, 1, _MOST_CHORDS) if len(run) > 2 else np.ones(1, dtype=int)
-    rows = np.vstack([*(a + np.arange(count)[:, None] / count * (b - a) for a, b, count in
-                        zip(run[:-1], run[1:], counts, strict=True)), run[-1:]])
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows, axis=0) * scale, axis=1))])
+    rows = _divide_chords(run, _chord_lengths(run, scale))
+    way = np.concatenate([[0.0], np.cumsum(_chord_lengths(rows, scale))])
     if len(rows) == 2:
         return _flat_curve(rows, way), float(way[-1])
     points, places = SharedPoint2dArray(1, len(rows)), SharedRealArray(1, len(rows))

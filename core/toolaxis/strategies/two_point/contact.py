@@ -85,7 +85,9 @@ def two_point_lead(radius: float, rho: ArrayLike, tolerance: float, feed_curvatu
     lead = np.arcsin(radius / hollow) - np.arccos(1 - tolerance / hollow)
     if feed_curvature is None:
         return np.asarray(lead)
-    return np.asarray(np.maximum(lead, np.arcsin(np.clip(radius * np.asarray(feed_curvature, dtype=float), 0.0, 1.0))))
+    bend = radius * np.asarray(feed_curvature, dtype=float)
+    least = np.arcsin(np.clip(bend, 0.0, 1.0))
+    return np.asarray(np.maximum(lead, least))
 
 
 def circle_strip_width(radius: float, rho: ArrayLike, tolerance: float, lead: ArrayLike, lift: float) -> Array:
@@ -113,11 +115,16 @@ def circle_strip_width(radius: float, rho: ArrayLike, tolerance: float, lead: Ar
 
     **Source**: [jang2021] Eqs. (8) and (9); for lift = d, x = 2 X (R - rho X) / (1 - X^2).
     """
-    hollow, sine = _hollow(radius, rho), np.sin(np.asarray(lead, dtype=float))
+    hollow = _hollow(radius, rho)
+    sine = np.sin(np.asarray(lead, dtype=float))
     low = tolerance - lift
-    flat, half = 1 - sine**2, sine * (radius - hollow * sine) - low
-    x = (half + np.sqrt(np.maximum(half**2 - flat * low * (low - 2 * radius * sine), 0.0))) / flat
-    return np.asarray(np.minimum(2 * np.sqrt(np.maximum(2 * hollow * x - x**2, 0.0)), 2 * radius))
+    # Both curves without y: (1 - X^2) x^2 - 2 half x + low (low - 2 R X) = 0, of which the greater solution counts.
+    square = 1 - sine**2
+    half = sine * (radius - hollow * sine) - low
+    root = np.sqrt(np.maximum(half**2 - square * low * (low - 2 * radius * sine), 0.0))
+    x = (half + root) / square
+    y = np.sqrt(np.maximum(2 * hollow * x - x**2, 0.0))
+    return np.asarray(np.minimum(2 * y, 2 * radius))
 
 
 def _hollow(radius: float, rho: ArrayLike) -> Array:

@@ -119,12 +119,14 @@ def _settle_postures(work: TwoPointInputs, setting: ContactSet, along: Array,
 
 def _follow_neighbours(work: TwoPointInputs, setting: ContactSet, stand: Posture) -> Posture:
     """Postures that lean and rise as much as their neighbours ask for."""
-    way = np.linalg.norm(np.diff(work.face.evaluate(setting.uv).point, axis=0), axis=1)
-    place = np.concatenate([[0.0], np.cumsum(way)])
+    points = work.face.evaluate(setting.uv).point
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    place = np.concatenate([[0.0], np.cumsum(gaps)])
     apart = np.abs(np.subtract.outer(place, place)) / work.tool.radius
-    lean = np.minimum((stand.lean - TURN * apart).max(axis=1), STEEPEST)
+    lean = (stand.lean - TURN * apart).max(axis=1)
     rise = (stand.lift - TURN * work.tool.radius * apart).max(axis=1)
-    return Posture(lean, stand.direction, np.where(rise > work.scallop, rise, stand.lift))
+    lift = np.where(rise > work.scallop, rise, stand.lift)
+    return Posture(np.minimum(lean, STEEPEST), stand.direction, lift)
 
 
 def _by_formula(work: TwoPointInputs, setting: ContactSet) -> Posture:
