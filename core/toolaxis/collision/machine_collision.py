@@ -325,14 +325,22 @@ def tree_of(cells: BoundingTree) -> BodyTree:
     ----------
     cells : BoundingTree
     """
-    shape, count = cells.shape, len(cells.shape)
+    shape = cells.shape
+    count = len(shape)
+    # A node is a parallelogram q + s a + t b, s and t from -1 to 1, with a ball of radius e carried around it.
     spread = np.zeros((count, 3, 3))
-    spread[:, 0], spread[:, 1] = shape[:, 3:6], shape[:, 6:9]
-    ball = shape[:, 9:10] + max(face.tolerance for face in cells.faces)
-    nodes = ConvexBodies(shape[:, None, :3], np.tile([0.0, 0.0, 1.0], (count, 1, 1)), np.zeros((count, 1)), ball,
-                         spread)
-    fine = (shape[:, 9] <= FLAT) & (cells.link[:, 2] >= 0)
-    return BodyTree(nodes, np.where(fine[:, None], -1, cells.link[:, :2]), shape[:, 10])
+    spread[:, 0] = shape[:, 3:6]
+    spread[:, 1] = shape[:, 6:9]
+    off_plane = shape[:, 9]
+    nodes = ConvexBodies(
+        centre=shape[:, None, :3],
+        axis=np.tile([0.0, 0.0, 1.0], (count, 1, 1)),
+        radius=np.zeros((count, 1)),
+        ball=off_plane[:, None] + max(face.tolerance for face in cells.faces),
+        spread=spread)
+    fine = (off_plane <= FLAT) & (cells.link[:, 2] >= 0)
+    children = np.where(fine[:, None], -1, cells.link[:, :2])
+    return BodyTree(nodes, children, shape[:, 10])
 
 
 def approach(moving: ConvexBodies, trail: BodyTree, fixed: BodyTree, enough: float) -> tuple[float, int, int]:

@@ -204,8 +204,11 @@ def _grid_lines(knots: Array, low: float, high: float) -> Array:
     """Even lines from low to high, with the knots between them."""
     inner = np.unique(knots)
     inner = inner[(inner > low) & (inner < high)]
-    even = np.linspace(low, high, max(2, _CELLS // (len(inner) + 1)) * (len(inner) + 1) + 1)
-    apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf) > 1e-9 * (high - low)
+    spans = len(inner) + 1
+    cells_in_span = max(2, _CELLS // spans)
+    even = np.linspace(low, high, cells_in_span * spans + 1)
+    to_knot = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf)
+    apart = to_knot > 1e-9 * (high - low)
     return np.sort(np.concatenate([even[apart], inner]))
 
 

@@ -247,9 +247,13 @@ def segment_durations(length: ArrayLike, velocity: ArrayLike, acceleration: Arra
     v0, v1, way = (np.asarray(value, dtype=float) for value in (*ends, length))
     up, hold_up = ramp_time(peak - v0, acceleration, jerk)
     down, hold_down = ramp_time(peak - v1, acceleration, jerk)
-    left = way - (v0 + peak) / 2 * (2 * up + hold_up) - (v1 + peak) / 2 * (2 * down + hold_down)
-    cruise = np.where(peak > 0, np.maximum(left, 0.0) / np.where(peak > 0, peak, 1.0), 0.0)
-    return np.stack(np.broadcast_arrays(up, hold_up, up, cruise, down, hold_down, down), axis=-1)
+    way_up = (v0 + peak) / 2 * (2 * up + hold_up)
+    way_down = (v1 + peak) / 2 * (2 * down + hold_down)
+    left = np.maximum(way - way_up - way_down, 0.0)
+    moves = peak > 0
+    cruise = np.where(moves, left / np.where(moves, peak, 1.0), 0.0)
+    segments = np.broadcast_arrays(up, hold_up, up, cruise, down, hold_down, down)
+    return np.stack(segments, axis=-1)
 
 
 def _jerks(durations: Array, ends: tuple[ArrayLike, ArrayLike], jerk: ArrayLike) -> Array:

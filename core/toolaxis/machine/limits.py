@@ -148,10 +148,11 @@ class RotaryRanges:
     def _to_meridian(self, rows: Array, tilts: tuple[float, float], across: Array) -> Array:
         """Angle to the arc from tilt to tilt on the half great circle through z and a direction across it."""
         z = np.asarray(self.z)
-        at = np.clip(np.arctan2(rows @ across, rows @ z), *tilts)
-        ends = [np.full(len(rows), t) for t in tilts]
-        places = [np.sin(t)[:, None] * across + np.cos(t)[:, None] * z for t in (at, *ends)]
-        return np.asarray(np.min([angle_between(rows, p) for p in places], axis=0))
+        nearest = np.clip(np.arctan2(rows @ across, rows @ z), *tilts)
+        ends = [np.full(len(rows), tilt) for tilt in tilts]
+        places = [np.sin(tilt)[:, None] * across + np.cos(tilt)[:, None] * z for tilt in (nearest, *ends)]
+        angles = [angle_between(rows, place) for place in places]
+        return np.asarray(np.min(angles, axis=0))
 
     def allowed(self, axes: ArrayLike) -> Bools:
         """Whether each axis lies within both ranges, (n,) bool.

@@ -26,11 +26,13 @@ def climbing(chart: Chart, cut: Cut) -> int:
     cut : Cut
     """
     a0, a1, s0, s1 = chart.bounds
-    a, s, da, ds = (a0 + a1) / 2, (s0 + s1) / 2, (a1 - a0) * 1e-4, (s1 - s0) * 1e-4
-    uv = chart.uv(np.array([a - da, a + da, a, a]), np.array([s, s, s - ds, s + ds]))
-    p = chart.face.evaluate(uv).point
-    right = np.cross(p[1] - p[0], cut.axis)
-    return 1 if float(right @ (p[3] - p[2])) >= 0 else -1
+    a, s = (a0 + a1) / 2, (s0 + s1) / 2
+    da, ds = (a1 - a0) * 1e-4, (s1 - s0) * 1e-4
+    along = np.array([a - da, a + da, a, a])
+    step = np.array([s, s, s - ds, s + ds])
+    before, ahead, machined, uncut = chart.face.evaluate(chart.uv(along, step)).point
+    right = np.cross(ahead - before, cut.axis)
+    return 1 if float(right @ (uncut - machined)) >= 0 else -1
 
 
 def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLike | None = None,

@@ -305,10 +305,15 @@ def extents(chart: Chart) -> tuple[float, float]:
     """
     a0, a1, s0, s1 = chart.bounds
     along, step = np.meshgrid(np.linspace(a0, a1, _EXTENT), np.linspace(s0, s1, _EXTENT), indexing="ij")
-    point = chart.face.evaluate(chart.uv(along.ravel(), step.ravel())).point.reshape(_EXTENT, _EXTENT, 3)
-    ways = (np.linalg.norm(np.diff(point, axis=axis), axis=-1).sum(axis=axis).max() for axis in (0, 1))
-    along_passes, across = (float(way) for way in ways)
-    return along_passes, across
+    uv = chart.uv(along.ravel(), step.ravel())
+    points = chart.face.evaluate(uv).point.reshape(_EXTENT, _EXTENT, 3)
+    return _greatest_length(points, 0), _greatest_length(points, 1)
+
+
+def _greatest_length(points: Array, axis: int) -> float:
+    """Length of the longest line along an axis of a grid of points, mm."""
+    gaps = np.linalg.norm(np.diff(points, axis=axis), axis=-1)
+    return float(gaps.sum(axis=axis).max())
 
 
 def rows(chart: Chart, steps: Array) -> Intervals:

@@ -104,10 +104,12 @@ class Excess:
         around : (k, 8, 2) array
             Corners and middles of the sides of each.
         """
-        at, ends = self._raise_points(middle), self._raise_points(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
+        at = self._raise_points(middle)
+        ends = self._raise_points(around.reshape(-1, 2)).reshape(*around.shape[:2], 3)
         reach = _BULGE * np.linalg.norm(ends - at[:, None], axis=2).max(axis=1)
         left = self._distance(at, _FAR) > 0  # most middles are cut: how far others are takes long to tell
-        left[left] = self._distance(at[left], float(reach[left].max(initial=0.0))) >= reach[left]
+        greatest = float(reach[left].max(initial=0.0))
+        left[left] = self._distance(at[left], greatest) >= reach[left]
         return left
 
     def _raise_points(self, uv: Array) -> Array:
@@ -399,7 +401,8 @@ def _share_on_border(face: Face, lines: tuple[Array, Array], values: Array) -> f
     corners = above[1:, 1:].astype(np.int8) + above[1:, :-1] + above[:-1, 1:] + above[:-1, :-1]
     cell = float(np.diff(lines[0]).mean() * np.diff(lines[1]).mean())
     border = cell * np.count_nonzero((corners > 0) & (corners < 4))
-    machined = sum(map(polygon_area, outer_with_holes(face.outline))) - cell * np.count_nonzero(above)
+    whole = sum(map(polygon_area, outer_with_holes(face.outline)))
+    machined = whole - cell * np.count_nonzero(above)
     return float(border / max(machined, cell))
 
 
@@ -412,11 +415,15 @@ def _above(lines: tuple[Array, Array], values: Array) -> Array:
 def _deep(zone: Face, deep: Excess, nodes: Array) -> bool:
     """Whether a zone comes to `DEEP` times the limit at its border or at nodes, (n, 2), of the grid."""
     u0, u1, v0, v1 = zone.bounds
-    near = nodes[(nodes[:, 0] >= u0) & (nodes[:, 0] <= u1) & (nodes[:, 1] >= v0) & (nodes[:, 1] <= v1)]
-    first = np.concatenate([near[::max(1, len(near) // _FIRST)], *zone.trims])
+    u, v = nodes.T
+    near = nodes[(u >= u0) & (u <= u1) & (v >= v0) & (v <= v1)]
+    # A few of them first: they often tell.
+    few = near[::max(1, len(near) // _FIRST)]
+    first = np.concatenate([few, *zone.trims])
     if (deep(first[zone.contains(first)]) > 0).any():
         return True
-    return bool((deep(np.concatenate([near[zone.contains(near)], *zone.trims])) > 0).any())
+    every = np.concatenate([near[zone.contains(near)], *zone.trims])
+    return bool((deep(every) > 0).any())
 
 
 def _at_wall(zone: Face, walls: Callable[[Array], Bools] | None) -> bool:

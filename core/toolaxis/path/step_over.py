@@ -440,14 +440,19 @@ def _holds(material: Array, steps: Array) -> NDArray[np.intp]:
 
 def _forecast(steps: list[float], halves: list[Array], front: Array, across: Lines) -> float:
     """Where the next pass will be, were the half widths to go on changing as they did between the last two."""
+    last = halves[-1][:, 0]
     rate = np.zeros(len(across.measured))
     if len(steps) > 1:
-        known = (halves[-1][:, 0] != 0) & (halves[-2][:, 0] != 0)
-        change = np.where(known, halves[-1][:, 0] - halves[-2][:, 0], 0.0)
+        before = halves[-2][:, 0]
+        known = (last != 0) & (before != 0)
+        change = np.where(known, last - before, 0.0)
         rate = np.clip(change / (steps[-1] - steps[-2]), -0.5, 0.5)
-    now, slope = across.spread(halves[-1][:, 0]), across.spread(rate)
+    now = across.spread(last)
+    slope = across.spread(rate)
+    # The step s with s - front = now + slope (s - last step): its own half width reaches back to the front.
     places = (front + now - slope * steps[-1]) / (1 - slope)
-    return float(places[np.isfinite(places)].min()) if np.isfinite(places).any() else steps[-1]
+    finite = places[np.isfinite(places)]
+    return float(finite.min()) if len(finite) else steps[-1]
 
 
 def _next(strips: _Strips, front: Array, top: Array, guess: float) -> tuple[float, float]:

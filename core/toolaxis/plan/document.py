@@ -42,7 +42,11 @@ def _rows(values: Array | None) -> list[Any] | None:
 
 
 def _finite(values: Array) -> list[float | None]:
-    return [float(v) if np.isfinite(v) else None for v in values]
+    return [_finite_or_none(value) for value in values]
+
+
+def _finite_or_none(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def tool_document(tool: Tool) -> Document:
@@ -101,11 +105,18 @@ def orientation_document(found: Orientation) -> Document:
     """
     record: Document = {name: getattr(found, name) for name in _SCALARS}
     for name in ("count", "length", "average_strip_width", "gouge", "unreached"):
-        record[name] = float(record[name]) if np.isfinite(record[name]) else None
-    return {**record, "passes": int(found.passes), "evaluations": int(found.evaluations), "axis": _rows(found.axis),
-            "clearance": {name: float(v) if np.isfinite(v) else None for name, v in found.clearance.items()},
-            "reasons": list(found.reasons), "lead": found.lead, "pattern": found.pattern, "ideal": float(found.ideal),
-            "lobes": [orientation_document(lobe) for lobe in found.lobes], "map": _map_document(found.map)}
+        record[name] = _finite_or_none(record[name])
+    record["passes"] = int(found.passes)
+    record["evaluations"] = int(found.evaluations)
+    record["axis"] = _rows(found.axis)
+    record["clearance"] = {name: _finite_or_none(value) for name, value in found.clearance.items()}
+    record["reasons"] = list(found.reasons)
+    record["lead"] = found.lead
+    record["pattern"] = found.pattern
+    record["ideal"] = float(found.ideal)
+    record["lobes"] = [orientation_document(lobe) for lobe in found.lobes]
+    record["map"] = _map_document(found.map)
+    return record
 
 
 def orientation_from(document: Mapping[str, Any]) -> Orientation:

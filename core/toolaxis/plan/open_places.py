@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
-from toolaxis.plan.unplanned_area import HIDDEN
+from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HELD_SIDE
@@ -87,17 +87,31 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
         Places of less than 0.01 mm^2 are left out.
     """
     operations = {op.number: op for op in plan.operations}
-    found = [_place(operations[one.operation], one) for one in list_open_faces(plan) if one.area >= LEAST]
-    found += [OpenPlace(one.label, one.area, 0.0, np.array(one.point), np.inf, False, beneath=one.beneath)
-              for one in plan.unplanned if one.why == HIDDEN and one.area >= LEAST]
-    return tuple(sorted(found, key=lambda one: (-one.area, one.label)))
+    left = [piece for piece in list_open_faces(plan) if piece.area >= LEAST]
+    hidden = [area for area in plan.unplanned if area.why == HIDDEN and area.area >= LEAST]
+    found = [_place(operations[piece.operation], piece) for piece in left]
+    found += [_hidden_place(area) for area in hidden]
+    return tuple(sorted(found, key=lambda place: (-place.area, place.label)))
+
+
+def _hidden_place(area: UnplannedArea) -> OpenPlace:
+    """A place under another face of its skin: no tool was ever asked for it."""
+    return OpenPlace(
+        label=area.label,
+        area=area.area,
+        unreachable=0.0,
+        point=np.array(area.point),
+        radius=np.inf,
+        limited=False,
+        beneath=area.beneath)
 
 
 def _place(op: Operation, piece: OpenFace) -> OpenPlace:
     face = piece.face
     uv = face.places_on(_CELLS)
     points = face.evaluate(uv).point
-    middle = points[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))]
+    from_mean = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    middle = points[np.argmin(from_mean)]
     hollow = float(face.curvature(uv).k1.max(initial=0.0))
     proven = op.unreachable if piece.zone is None else op.zones[piece.zone].unreachable
     limited = is_out_of_work(op.orientation.reasons)

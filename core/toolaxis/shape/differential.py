@@ -79,9 +79,10 @@ def _change(d: Derivatives, inward: Array) -> Array:
     along_u = np.cross(d.suu, d.sv) + np.cross(d.su, d.suv)
     along_v = np.cross(d.suv, d.sv) + np.cross(d.su, d.svv)
     change = inward[:, :1] * along_u + inward[:, 1:] * along_v
-    longest = np.sqrt(np.maximum(dot(d.su, d.su), dot(d.sv, d.sv)))
-    second = np.max([np.linalg.norm(each, axis=1) for each in (d.suu, d.suv, d.svv)], axis=0)
-    noise = 1e-12 * longest * second * np.linalg.norm(inward, axis=1)
+    longest_first = np.sqrt(np.maximum(dot(d.su, d.su), dot(d.sv, d.sv)))
+    second = [np.linalg.norm(each, axis=1) for each in (d.suu, d.suv, d.svv)]
+    longest_second = np.max(second, axis=0)
+    noise = 1e-12 * longest_first * longest_second * np.linalg.norm(inward, axis=1)
     real = np.linalg.norm(change, axis=1) > noise
     return np.where(real[:, None], change, 0.0)
 

@@ -119,9 +119,16 @@ def _piece(face: Face, strip_u: tuple[float, float], strip_v: tuple[float, float
     knots_u, net = restrict_spline(surface.knots_u, surface.control, surface.degree[0], *strip_u)
     knots_v, net = restrict_spline(surface.knots_v, net.swapaxes(0, 1), surface.degree[1], *strip_v)
     own = NurbsSurface(knots_u, knots_v, net.swapaxes(0, 1), surface.degree)
-    whole = len(loops) == 1 and len(loops[0]) == 4 and np.isin(loops[0][:, 0], strip_u).all() \
-        and np.isin(loops[0][:, 1], strip_v).all()
-    return replace(face, surface=own, trims=() if whole else loops, kinks=((), ()))
+    trims = () if _is_rectangle(loops, strip_u, strip_v) else loops
+    return replace(face, surface=own, trims=trims, kinks=((), ()))
+
+
+def _is_rectangle(loops: tuple[Array, ...], strip_u: tuple[float, float], strip_v: tuple[float, float]) -> bool:
+    """Whether the only loop runs around the whole of a rectangle."""
+    if len(loops) != 1 or len(loops[0]) != 4:
+        return False
+    u, v = loops[0].T
+    return bool(np.isin(u, strip_u).all() and np.isin(v, strip_v).all())
 
 
 def letters(index: int) -> str:

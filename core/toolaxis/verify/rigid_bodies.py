@@ -154,12 +154,17 @@ def _from_line(corners: Array, places: Array) -> Array:
     least = np.full(len(places), np.inf)
     crossings = np.zeros(len(places), dtype=int)
     for (r0, z0), (r1, z1) in pairwise(corners):
-        way, size = np.array([r1 - r0, z1 - z0]), (r1 - r0) ** 2 + (z1 - z0) ** 2
-        along = np.clip(((places - [r0, z0]) @ way) / max(size, 1e-30), 0.0, 1.0)
-        least = np.minimum(least, lengths(places - [r0, z0] - along[:, None] * way))
-        between = (np.minimum(z0, z1) <= places[:, 1]) & (places[:, 1] < np.maximum(z0, z1))
-        at = r0 + (places[:, 1] - z0) * (r1 - r0) / (z1 - z0 if z1 != z0 else 1.0)
-        crossings += between & (at > places[:, 0])
+        way = np.array([r1 - r0, z1 - z0])
+        size = (r1 - r0) ** 2 + (z1 - z0) ** 2
+        offset = places - [r0, z0]
+        along = np.clip((offset @ way) / max(size, 1e-30), 0.0, 1.0)
+        least = np.minimum(least, lengths(offset - along[:, None] * way))
+        # A place is inside where a ray outwards from it, at its height, crosses the line an odd number of times.
+        radius, height = places.T
+        between = (np.minimum(z0, z1) <= height) & (height < np.maximum(z0, z1))
+        rise = z1 - z0 if z1 != z0 else 1.0
+        at = r0 + (height - z0) * (r1 - r0) / rise
+        crossings += between & (at > radius)
     return np.where(crossings % 2 == 1, -least, least)
 
 
@@ -173,5 +178,7 @@ def cutter_line(profile: Profile) -> Array:
     a, r, beta = profile.flat_radius, profile.corner_radius, profile.half_angle
     angle = np.linspace(0.0, np.pi / 2 - beta, _ARC + 1)
     arc = np.stack([a + r * np.sin(angle), r * (1 - np.cos(angle))], axis=1)
-    rise = profile.top - arc[-1, 1]
-    return np.concatenate([arc, [[arc[-1, 0] + rise * np.tan(beta), profile.top]]])
+    end_radius, end_height = arc[-1]
+    rise = profile.top - end_height
+    top = [end_radius + rise * np.tan(beta), profile.top]
+    return np.concatenate([arc, [top]])

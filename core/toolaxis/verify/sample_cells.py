@@ -205,11 +205,15 @@ def split(faces: tuple[Face, ...], cells: SampleCells) -> SampleCells:
     inner = cells.rows(np.flatnonzero(~cells.edge))
     line = cells.rows(np.flatnonzero(cells.edge))
     offset = grid_rows(third, third)
-    uv = (inner.uv[:, None] + offset * inner.half[:, None]).reshape(-1, 2)
-    loop = (line.uv[:, None] + third[:, None] * line.half[:, None]).reshape(-1, 2)
-    half = np.vstack([np.repeat(inner.half, 9, axis=0), np.repeat(line.half, 3, axis=0)]) / 3
+    inner_uv = (inner.uv[:, None] + offset * inner.half[:, None]).reshape(-1, 2)
+    line_uv = (line.uv[:, None] + third[:, None] * line.half[:, None]).reshape(-1, 2)
+    inner_half = np.repeat(inner.half, 9, axis=0)
+    line_half = np.repeat(line.half, 3, axis=0)
     owner = np.append(np.repeat(inner.owner, 9), np.repeat(line.owner, 3))
-    return _cells(faces, owner, np.vstack([uv, loop]), half, np.arange(len(owner)) >= len(uv))
+    uv = np.vstack([inner_uv, line_uv])
+    half = np.vstack([inner_half, line_half]) / 3
+    on_loop = np.arange(len(owner)) >= len(inner_uv)
+    return _cells(faces, owner, uv, half, on_loop)
 
 
 def merge_cells(parts: Sequence[SampleCells]) -> SampleCells:

@@ -169,12 +169,17 @@ def _turn_between(source: VerificationTask, task: VerificationTask) -> RigidMoti
     here = np.concatenate([source.tips, source.tips + arm * source.axes])
     there = np.concatenate([task.tips, task.tips + arm * task.axes])
     middle, other = here.mean(axis=0), there.mean(axis=0)
+    # The rotation that fits best, by the singular vectors of the covariance; its last sign keeps it from mirroring.
     u, _, v = np.linalg.svd((here - middle).T @ (there - other))
-    rotation = v.T @ np.diag([1.0, 1.0, np.sign(np.linalg.det(v.T @ u.T))]) @ u.T
+    handedness = np.sign(np.linalg.det(v.T @ u.T))
+    rotation = v.T @ np.diag([1.0, 1.0, handedness]) @ u.T
     shift = other - rotation @ middle
-    error = float(np.linalg.norm(source.tips @ rotation.T + shift - task.tips, axis=1).max())
-    leaning = float(np.linalg.norm(source.axes @ rotation.T - task.axes, axis=1).max())
-    return RigidMotion(rotation, shift, error) if error <= _TIPS and leaning <= _AXES else None
+    missed = source.tips @ rotation.T + shift - task.tips
+    turned_away = source.axes @ rotation.T - task.axes
+    error = float(np.linalg.norm(missed, axis=1).max())
+    leaning = float(np.linalg.norm(turned_away, axis=1).max())
+    same = error <= _TIPS and leaning <= _AXES
+    return RigidMotion(rotation, shift, error) if same else None
 
 
 def _images(faces: Sequence[Face], others: Sequence[Face], turn: RigidMotion) -> dict[int, Face]:

@@ -116,12 +116,18 @@ def reschedule(found: CutterLocations, tool: Tool, *, curve: str = "least", dire
 
 def _turning(path: ToolPath, tool: Tool, swing: SwivelAxis) -> RotaryMotion:
     cut = np.flatnonzero(path.kind == Motion.CUT)
-    centre, angle = path.cl + tool.corner_radius * path.axis, swing.angles(path.axis)
-    turn = np.diff(angle)[cut[cut > 0] - 1]
-    way = np.linalg.norm(np.diff(centre, axis=0), axis=1)[cut[cut > 0] - 1]
+    before = cut[cut > 0] - 1
+    centre = path.cl + tool.corner_radius * path.axis
+    turn = np.diff(swing.angles(path.axis))[before]
+    way = np.linalg.norm(np.diff(centre, axis=0), axis=1)[before]
+    moves = way > 0
+    slope = np.abs(turn[moves]) / way[moves]
     sense = np.sign(turn[np.abs(turn) > _STILL])
-    steep = np.abs(turn[way > 0]) / way[way > 0]
-    return RotaryMotion(float(steep.max(initial=0.0)), int((np.diff(sense) != 0).sum()), float(np.abs(turn).sum()))
+    backwards = np.diff(sense) != 0
+    return RotaryMotion(
+        steepest=float(slope.max(initial=0.0)),
+        backwards=int(backwards.sum()),
+        total=float(np.abs(turn).sum()))
 
 
 def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, progress: Progress) -> None:

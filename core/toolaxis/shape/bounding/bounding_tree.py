@@ -167,13 +167,21 @@ def merge_trees(parts: Sequence[BoundingTree]) -> BoundingTree:
     leaves = np.cumsum([0, *(len(p.leaf) for p in parts)])
     edges = np.cumsum([0, *(len(p.edges) for p in parts)])
     nodes = np.cumsum([len(parts) - 1, *(len(p.shape) for p in parts)])
-    top_shape, top_link = branch_roots(np.stack([p.shape[0] for p in parts]), nodes[:-1])
-    top = np.column_stack([top_shape, np.zeros((len(top_shape), 10)), np.full(len(top_shape), np.inf)])
+    roots = np.stack([p.shape[0] for p in parts])
+    top_shape, top_link = branch_roots(roots, nodes[:-1])
+    # What is above the faces bends beyond all bounds.
+    no_bend = np.zeros((len(top_shape), 10))
+    unbounded = np.full(len(top_shape), np.inf)
+    top = np.column_stack([top_shape, no_bend, unbounded])
     links = [_shift_link(p.link, nodes[k], faces[k], leaves[k]) for k, p in enumerate(parts)]
-    start = np.concatenate([*(p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)), edges[-1:]])
-    return BoundingTree(tuple(f for p in parts for f in p.faces), np.vstack([top, *(p.nodes for p in parts)]),
-                        np.vstack([top_link, *links]), np.vstack([p.leaf for p in parts]), start.astype(np.int64),
-                        np.vstack([p.edges for p in parts]))
+    starts = [p.edge_start[:-1] + edges[k] for k, p in enumerate(parts)]
+    return BoundingTree(
+        faces=tuple(face for p in parts for face in p.faces),
+        nodes=np.vstack([top, *(p.nodes for p in parts)]),
+        link=np.vstack([top_link, *links]),
+        leaf=np.vstack([p.leaf for p in parts]),
+        edge_start=np.concatenate([*starts, edges[-1:]]).astype(np.int64),
+        edges=np.vstack([p.edges for p in parts]))
 
 
 def forest(faces: Sequence[Face], fineness: float = FINENESS) -> BoundingTree:

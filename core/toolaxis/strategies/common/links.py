@@ -8,6 +8,7 @@ down along it.  As high as `Swivelling.height` asks, the whole tool is above eve
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,16 @@ class MovingCuttingMove(CuttingMove):
     axis: Array
 
 
+class _LinkedStroke(NamedTuple):
+    """Points of a stroke with the motions that lead onto it and away, as a `ToolPath` has them."""
+
+    contact: Array
+    tip: Array
+    axis: Array
+    normal: Array
+    kind: NDArray[np.int8]
+
+
 class LinkMotion(Enum):
     """What a motion of a link does, and so what it has to keep clear of."""
 
@@ -92,10 +103,11 @@ class MovingLinks:
         axes : (k, 3) array
             Their directions between two of them, on the shortest way, count too.
         """
-        rims = [np.array([[self.tool.radius, 0.0], [self.tool.profile.top_radius, self.tool.profile.top]]),
-                *self.tool.outlines.values()]
-        rho, z = np.concatenate(rims).T
-        lean = np.linspace(0.0, float(np.max(angle_between(axes, self.up))), 64)[:, None]
+        profile = self.tool.profile
+        cutter = np.array([[self.tool.radius, 0.0], [profile.top_radius, profile.top]])
+        rho, z = np.concatenate([cutter, *self.tool.outlines.values()]).T
+        most = float(np.max(angle_between(axes, self.up)))
+        lean = np.linspace(0.0, most, 64)[:, None]
         below = float((rho * np.sin(lean) - z * np.cos(lean)).max())
         spread = (float(lean[-1, 0]) / 63) * float(np.hypot(rho, z).max())  # between the angles looked at
         return self.linking.height + max(below, 0.0) + spread
@@ -142,20 +154,29 @@ def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolP
     stays = np.isfinite(over[:, 0])
     pieces = []
     for k, stroke in enumerate(strokes):
-        before, after = np.concatenate([down[k][None], begins[k]]), np.concatenate([ends[k], up[k][None]])
-        kind = kinds_of(len(before), len(stroke.tip), len(after))
-        before, turned = before[2 * stays[k]:], np.tile(last[k], (len(after), 1))
+        entry = np.concatenate([down[k][None], begins[k]])
+        leaving = np.concatenate([ends[k], up[k][None]])
+        kind = kinds_of(len(entry), len(stroke.tip), len(leaving))
+        leaving_axes = np.tile(last[k], (len(leaving), 1))
+        if stays[k]:  # the tool comes from the stroke before, low over the part, and not from above
+            entry, kind = entry[2:], kind[2:]
         if stays[k + 1]:
-            after = np.concatenate([ends[k][:-1], over[k + 1:k + 2]])
-            turned = np.concatenate([turned[2:], unit(last[k] + first[k + 1])[None]])
-        axis = np.concatenate([np.tile(first[k], (len(before), 1)), stroke.axis, turned])
-        pieces.append((np.concatenate([before, stroke.contact, after]), np.concatenate([before, stroke.tip, after]),
-                       axis, np.concatenate([axis[:len(before)], stroke.normal, turned]),
-                       kind[2 * stays[k]:len(kind) - stays[k + 1]]))
-    contacts, tips, axes, normals, kinds = (np.concatenate(rows) for rows in zip(*pieces, strict=True))
-    size = np.cumsum([len(piece[4]) for piece in pieces])
-    breaks = np.concatenate([[0], size[np.cumsum([len(some) for some in passes]) - 1]])
-    return ToolPath(contacts, tips, axes, normals, kinds.astype(np.int8), breaks.astype(np.int64))
+            leaving = np.concatenate([ends[k][:-1], over[k + 1:k + 2]])
+            halfway = unit(last[k] + first[k + 1])
+            leaving_axes = np.concatenate([leaving_axes[2:], halfway[None]])
+            kind = kind[:-1]
+        entry_axes = np.tile(first[k], (len(entry), 1))
+        pieces.append(_LinkedStroke(
+            contact=np.concatenate([entry, stroke.contact, leaving]),
+            tip=np.concatenate([entry, stroke.tip, leaving]),
+            axis=np.concatenate([entry_axes, stroke.axis, leaving_axes]),
+            normal=np.concatenate([entry_axes, stroke.normal, leaving_axes]),
+            kind=kind))
+    whole = _LinkedStroke(*(np.concatenate(rows) for rows in zip(*pieces, strict=True)))
+    size = np.cumsum([len(piece.kind) for piece in pieces])
+    last_of_pass = np.cumsum([len(some) for some in passes]) - 1
+    breaks = np.concatenate([[0], size[last_of_pass]]).astype(np.int64)
+    return ToolPath(whole.contact, whole.tip, whole.axis, whole.normal, whole.kind.astype(np.int8), breaks)
 
 
 def _above(tips: Array, axes: Array, up: Array, height: float) -> Array:

@@ -143,17 +143,21 @@ class ConstantLeadSearch:
             rad
         feed : str
         """
-        chart, cut = MovingChart(self.face, feed), self.cut(lead, feed)
+        chart = MovingChart(self.face, feed)
+        cut = self.cut(lead, feed)
         a0, a1, s0, s1 = chart.bounds
-        along, step = a0 + (a1 - a0) * np.linspace(0, 1, _ALONG), s0 + (s1 - s0) * (np.arange(_ACROSS) + 0.5) / _ACROSS
-        grid = [part.ravel() for part in np.meshgrid(step, along, indexing="ij")]
-        wide = limit_half_widths(chart, cut, grid[1], grid[0]).sum(axis=1).reshape(_ACROSS, _ALONG)
-        point = self.face.evaluate(chart.uv(grid[1], grid[0])).point.reshape(_ACROSS, _ALONG, 3)
-        lengths = np.linalg.norm(np.diff(point, axis=1), axis=2).sum(axis=1)
-        if not (wide > 0).all():
+        along = a0 + (a1 - a0) * np.linspace(0, 1, _ALONG)
+        step = s0 + (s1 - s0) * (np.arange(_ACROSS) + 0.5) / _ACROSS
+        every_step, every_along = (part.ravel() for part in np.meshgrid(step, along, indexing="ij"))
+        halves = limit_half_widths(chart, cut, every_along, every_step)
+        widths = halves.sum(axis=1).reshape(_ACROSS, _ALONG)
+        uv = chart.uv(every_along, every_step)
+        points = self.face.evaluate(uv).point.reshape(_ACROSS, _ALONG, 3)
+        lengths = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
+        if not (widths > 0).all():
             return _Lead(lead, feed, np.inf, np.inf)
-        counts = (s1 - s0) / _ACROSS / wide.min(axis=1)
-        return _Lead(lead, feed, float(counts.sum()), float((counts * lengths).sum()))
+        passes = (s1 - s0) / _ACROSS / widths.min(axis=1)
+        return _Lead(lead, feed, float(passes.sum()), float((passes * lengths).sum()))
 
 
 def sturz(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:

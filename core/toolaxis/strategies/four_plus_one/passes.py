@@ -53,12 +53,15 @@ class AngleField:
         ----------
         along, step : (k,) array
         """
-        a, s = np.clip(along, *self.along[[0, -1]]), np.clip(step, *self.step[[0, -1]])
+        a = np.clip(along, self.along[0], self.along[-1])
+        s = np.clip(step, self.step[0], self.step[-1])
         value = self._spline.ev(a, s)
-        for beyond, order, nodes in ((along - a, {"dx": 1}, self.along), (step - s, {"dy": 1}, self.step)):
-            some, gap = np.flatnonzero(beyond), float(nodes[1] - nodes[0])
+        for beyond, derivative, nodes in ((along - a, {"dx": 1}, self.along), (step - s, {"dy": 1}, self.step)):
+            some = np.flatnonzero(beyond)
             if len(some):
-                value[some] += gap * np.tanh(beyond[some] / gap) * self._spline.ev(a[some], s[some], **order)
+                gap = float(nodes[1] - nodes[0])
+                slope = self._spline.ev(a[some], s[some], **derivative)
+                value[some] += gap * np.tanh(beyond[some] / gap) * slope
         return np.asarray(value)
 
 

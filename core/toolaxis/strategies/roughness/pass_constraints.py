@@ -165,10 +165,13 @@ class PassConstraints:
         axis : (n, 3) array
         """
         cutter = cutter_parameters(self.tool, self.wish.scallop, self.allowance)
-        tf, tk = ((axis * self.forms[:, 3 * c:3 * c + 3]).sum(axis=1) for c in range(2))
-        ff, fk, kk = relative_forms(self.forms, (tf, tk), cutter)
+        feed, left = self.forms[:, 0:3], self.forms[:, 3:6]
+        along_feed = (axis * feed).sum(axis=1)
+        along_left = (axis * left).sum(axis=1)
+        ff, fk, kk = relative_forms(self.forms, (along_feed, along_left), cutter)
         least = (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk)
-        return kk - fk**2 / np.maximum(ff, 1e-3 / self.tool.radius), least
+        swept = kk - fk**2 / np.maximum(ff, 1e-3 / self.tool.radius)
+        return swept, least
 
     def leans(self, axis: Array) -> Array:
         """Angles between axis and normal, (n,) rad.

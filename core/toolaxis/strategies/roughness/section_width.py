@@ -63,12 +63,15 @@ class Sections:
         cutter = cutter_parameters(self.tool, self.scallop, self.allowance)
         tip = tips(self.point, self.normal, axis, self.tool, self.allowance)
         spend(_QUESTION + self.lifted[..., 0].size)
-        off = cutter_distances(cutter, self.lifted - tip[:, None, None], axis[:, None, None])
-        first = np.concatenate([np.full((*off.shape[:2], 1), -min(self.scallop, self.tool.radius)), off], axis=2)
+        away = cutter_distances(cutter, self.lifted - tip[:, None, None], axis[:, None, None])
+        at_contact = np.full((*away.shape[:2], 1), -min(self.scallop, self.tool.radius))
+        distance = np.concatenate([at_contact, away], axis=2)
         places = np.concatenate([[0.0], self.places])
-        outside = first[..., 1:] > 0
-        k = np.where(outside.any(axis=2), np.argmax(outside, axis=2) + 1, len(places) - 1)
-        return np.where(outside.any(axis=2), _crossing(places, first, k), places[-1])
+        outside = away > 0
+        ends = outside.any(axis=2)
+        first_outside = np.argmax(outside, axis=2) + 1
+        k = np.where(ends, first_outside, len(places) - 1)
+        return np.where(ends, _crossing(places, distance, k), places[-1])
 
 
 def _crossing(places: Array, values: Array, k: NDArray[np.intp]) -> Array:
