@@ -74,9 +74,11 @@ def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> Blade
     here, there = _slid(face, other, start)
     if not (face.contains(here[None])[0] and other.contains(there[None])[0]):
         here, there = _to_and_fro(face, other, face.evaluate(start[0][None]).point)
-    a, b = face.evaluate(here[None]).point[0], other.evaluate(there[None]).point[0]
+    a = face.evaluate(here[None]).point[0]
+    b = other.evaluate(there[None]).point[0]
     length = float(np.linalg.norm(b - a))
-    straight = length > 0 and float(face.normal(here[None])[0] @ (b - a)) >= length * np.cos(STRAIGHT)
+    along_normal = float(face.normal(here[None])[0] @ (b - a))
+    straight = length > 0 and along_normal >= length * np.cos(STRAIGHT)
     return BladeGapPoints(length, a, b, other.number, straight)
 
 

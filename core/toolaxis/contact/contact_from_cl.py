@@ -105,8 +105,13 @@ def _solve_contacts(placed: tuple[Face, Tool, float], tips: Array, axes: Array, 
 
 def _step(su: Array, sv: Array, gap: Array, damping: Array) -> Array:
     """Shares of the parameters' ranges to go, (n, 2), by least squares."""
-    a, b, c = dot(su, su), dot(su, sv), dot(sv, sv)
-    p, q = -dot(su, gap), -dot(sv, gap)
-    a, c = a * (1 + damping) + 1e-30, c * (1 + damping) + 1e-30
+    # The normal equations (a, b; b, c) (u, v) = (p, q), damped.
+    a = dot(su, su) * (1 + damping) + 1e-30
+    b = dot(su, sv)
+    c = dot(sv, sv) * (1 + damping) + 1e-30
+    p = -dot(su, gap)
+    q = -dot(sv, gap)
     determinant = np.maximum(a * c - b * b, 1e-14 * a * c)
-    return np.stack([(c * p - b * q) / determinant, (a * q - b * p) / determinant], axis=1)
+    u = (c * p - b * q) / determinant
+    v = (a * q - b * p) / determinant
+    return np.stack([u, v], axis=1)

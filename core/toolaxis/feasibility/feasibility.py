@@ -236,12 +236,18 @@ class Feasibility:
         least, greatest = self.normals.angles(rows)
         if self.watched is not None:
             angle = angle_between(rows[:, None], self.face.normal(self.watched)[None])
-            least, greatest = np.minimum(least, angle.min(axis=1)), np.maximum(greatest, angle.max(axis=1))
-        excess = np.zeros(len(rows)) if self.limits is None else self.limits.excess(rows)
-        outside = np.zeros(len(rows), dtype=bool) if self.limits is None else ~self.limits.allowed(rows)
-        back, wanders = greatest - self.greatest_angle, self.least_angle - least
+            least = np.minimum(least, angle.min(axis=1))
+            greatest = np.maximum(greatest, angle.max(axis=1))
+        none = np.zeros(len(rows))
+        excess = none
+        outside = np.zeros(len(rows), dtype=bool)
+        if self.limits is not None:
+            excess = self.limits.excess(rows)
+            outside = ~self.limits.allowed(rows)
+        back = greatest - self.greatest_angle
+        wanders = self.least_angle - least
         reason = np.select([outside, back > 0, wanders > 0], [LIMITS, BACK, WANDERS], FREE).astype(np.int8)
-        return reason, np.choose(reason, [np.zeros(len(rows)), excess, back, wanders])
+        return reason, np.choose(reason, [none, excess, back, wanders])
 
     def stand(self, axis: Array, contacts: CheckPoints, thorough: bool = True) -> tuple[int, float, float]:
         """Reason, amount (mm) and unreached share of one axis at contacts.

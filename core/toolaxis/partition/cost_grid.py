@@ -79,11 +79,15 @@ class CostGrid:
         ----------
         other : CostGrid
         """
-        u, v = (line if len(line) == 1 else np.concatenate([line, more])
-                for line, more in zip(self.lines, other.lines, strict=True))
-        return CostGrid(np.concatenate([self.axes, other.axes]), np.concatenate([self.rates, other.rates]),
-                        np.concatenate([self.left, other.left]), (u, v), np.concatenate([self.extra, other.extra]),
-                        self.whole)
+        lines_u, lines_v = (own if len(own) == 1 else np.concatenate([own, more])
+                            for own, more in zip(self.lines, other.lines, strict=True))
+        return CostGrid(
+            axes=np.concatenate([self.axes, other.axes]),
+            rates=np.concatenate([self.rates, other.rates]),
+            left=np.concatenate([self.left, other.left]),
+            lines=(lines_u, lines_v),
+            extra=np.concatenate([self.extra, other.extra]),
+            whole=self.whole)
 
 
 def compute_cost_grid(lattice: Lattice, worth: MachiningCost, feasibility: Feasibility, axes: Array,

@@ -155,11 +155,14 @@ class MovingChart(IsoChart):
         speed = np.linalg.norm(d.su if self.feed == "u" else d.sv, axis=1)
         reach = _WINDOW * (cut.tool.radius + cut.scallop) / np.maximum(speed, 1e-9)
         t = np.linspace(-1.0, 1.0, 2 * _POSITIONS + 1)
-        uv = self.uv((along[:, None] + reach[:, None] * t).ravel(), np.repeat(step, len(t)))
+        around = along[:, None] + reach[:, None] * t
+        uv = self.uv(around.ravel(), np.repeat(step, len(t)))
         near, normal = self._evaluate_at(uv)
-        axes = cut.field.axes(self.face, uv, frame_from_normal(normal, near.su if self.feed == "u" else near.sv))
+        frame = frame_from_normal(normal, near.su if self.feed == "u" else near.sv)
+        axes = cut.field.axes(self.face, uv, frame)
+        tip = tips(near.point, normal, axes, cut.tool, cut.allowance)
         shape = (len(along), len(t), 3)
-        return tips(near.point, normal, axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
+        return tip.reshape(shape), axes.reshape(shape)
 
     def _off(self, cut: Cut, cutter: CutterParameters, at: tuple[Array, Array],
              positions: tuple[Array, Array]) -> Array:

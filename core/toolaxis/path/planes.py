@@ -185,9 +185,13 @@ class PlaneChart(FreeChart):
         uv, feed = self.clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
         forms = contact_forms(self.face, uv, feed, False)
-        lean, bend = forms[:, 3:6] @ self.frame[1], 0.5 * forms[:, 11] * (forms[:, 6:9] @ self.frame[1])
-        right, left = width[:, 1], width[:, 0]
-        return np.column_stack([right * lean - bend * right**2, left * lean + bend * left**2])
+        across = self.frame[1]
+        lean = forms[:, 3:6] @ across
+        bend = 0.5 * forms[:, 11] * (forms[:, 6:9] @ across)
+        left, right = width[:, 0], width[:, 1]
+        lower = right * lean - bend * right**2
+        upper = left * lean + bend * left**2
+        return np.column_stack([lower, upper])
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
         """About the two half widths together, (n,), in the step parameter: second-order, corrected for the lean."""

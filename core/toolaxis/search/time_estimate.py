@@ -115,7 +115,8 @@ class TimeEstimate:
         steps = np.array([(0, 0, 0), (ramp, 0, ramp), (0, _STEP, 0), (-ramp, 0, -ramp)], dtype=float)
         slow = self.feeds.cut if self.feeds.approach is None else self.feeds.approach
         wanted = [slow] * (len(steps) - 1)
-        tips, bounds = np.cumsum(steps, axis=0), linear_bounds(self.mounting.machine)
+        tips = np.cumsum(steps, axis=0)
+        bounds = linear_bounds(self.mounting.machine)
         return schedule_polyline(tips, tips, wanted, bounds, self.feeds.tolerance).duration
 
     def speeds(self, axes: Array) -> Array:

@@ -57,10 +57,14 @@ class HalfSpace:
         middle = box.mean(axis=0)
         centre = middle - self.depth(middle)[0] * self.normal
         size = _DIAGONALS * float(np.linalg.norm(box[1] - box[0])) + _LENGTH
-        along = unit(np.cross(self.normal, np.eye(3)[np.argmin(np.abs(self.normal))]))
+        least_along = np.eye(3)[np.argmin(np.abs(self.normal))]
+        along = unit(np.cross(self.normal, least_along))
         across = np.cross(self.normal, along)
-        corners = [[centre + size * (a * along + b * across) for b in (-1, 1)] for a in (-1, 1)]
-        return Face.from_bspline(np.array(corners), degree=(1, 1)).trimmed((), HELD_SIDE)
+        corners = np.empty((2, 2, 3))
+        for i, a in enumerate((-1, 1)):
+            for k, b in enumerate((-1, 1)):
+                corners[i, k] = centre + size * (a * along + b * across)
+        return Face.from_bspline(corners, degree=(1, 1)).trimmed((), HELD_SIDE)
 
     def transformed(self, matrix: ArrayLike) -> "HalfSpace":
         """The half-space moved by an affine map.

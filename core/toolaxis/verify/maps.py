@@ -203,11 +203,14 @@ class SurfaceMap:
         return tuple(sorted(zones, key=lambda zone: (-zone.area, zone.low)))
 
     def _zone(self, rows: NDArray[np.int64]) -> MapZone:
-        low, high = self.point[rows].min(axis=0), self.point[rows].max(axis=0)
-        lost = np.isinf(self.remaining[rows]).any()
-        return MapZone(self.face.label, float(self.weight[rows].sum()), _triple(low), _triple(high),
-                       float(self.remaining[rows].max()), "not reached" if lost else "above the limit",
-                       bool(self.border[rows].any()))
+        point = self.point[rows]
+        low = _triple(point.min(axis=0))
+        high = _triple(point.max(axis=0))
+        area = float(self.weight[rows].sum())
+        remaining = self.remaining[rows]
+        cause = "not reached" if np.isinf(remaining).any() else "above the limit"
+        on_border = bool(self.border[rows].any())
+        return MapZone(self.face.label, area, low, high, float(remaining.max()), cause, on_border)
 
 
 def _triple(row: Array) -> tuple[float, float, float]:

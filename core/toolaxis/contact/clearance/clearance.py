@@ -203,9 +203,11 @@ def _distances(tool: Tool, moves: Array, around: Surroundings, how: tuple[float,
 
 
 def _verdicts(tool: Tool, moves: Array, around: Surroundings) -> ClearanceFlags:
-    if not around.faces or not len(moves):
-        return ClearanceFlags(np.ones(len(moves), dtype=bool), np.full(len(moves), -1), np.full(len(moves), -1))
+    count = len(moves)
+    if not around.faces or not count:
+        return ClearanceFlags(np.ones(count, dtype=bool), np.full(count, -1), np.full(count, -1))
     found = keeps_limits(around.cells, tool, moves, around.required)
     safe = np.asarray(found.blocked < 0)
-    face = np.where(safe, -1, np.take_along_axis(found.face, np.maximum(found.blocked, 0)[:, None], axis=1)[:, 0])
-    return ClearanceFlags(safe, found.blocked, face)
+    component = np.maximum(found.blocked, 0)
+    met = np.take_along_axis(found.face, component[:, None], axis=1)[:, 0]
+    return ClearanceFlags(safe, found.blocked, np.where(safe, -1, met))

@@ -370,11 +370,13 @@ class PlanningJob:
 
     def _operations_of(self, targets: list[Target], progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations of sub-surfaces as far as they were made, and whether the user stopped that."""
-        done = abreast(lambda k, inner: self._operation(targets[k], (k, len(targets)), inner), len(targets),
-                       self.workers, progress)
-        made = {**done.results,
-                **{k: fail_face(k + 1, targets[k].face, self.tool, why) for k, why in done.faults.items()}}
-        return tuple(replace(made[k], face=targets[k].face) for k in sorted(made)), done.cancelled
+        count = len(targets)
+        done = abreast(lambda k, inner: self._operation(targets[k], (k, count), inner), count, self.workers, progress)
+        made = dict(done.results)
+        for k, why in done.faults.items():
+            made[k] = fail_face(k + 1, targets[k].face, self.tool, why)
+        operations = tuple(replace(made[k], face=targets[k].face) for k in sorted(made))
+        return operations, done.cancelled
 
     @property
     def _may_divide(self) -> bool:
@@ -426,8 +428,11 @@ class PlanningJob:
             return reckon_axes(self.task(face, inner), scene, axes, own, rate, INDEX_SECONDS)
 
         shared, cancelled = share_axes(open_, used, _reckon, self.workers, progress)
-        given = dict(zip(map(id, open_), shared, strict=True))
-        return {k: [given.get(id(one), one) for one in some] for k, some in pieces.items()}, cancelled
+        given = {id(old): new for old, new in zip(open_, shared, strict=True)}
+        replaced = {}
+        for number, some in pieces.items():
+            replaced[number] = [given.get(id(target), target) for target in some]
+        return replaced, cancelled
 
     def _with_machined_beside(self, pieces: Sequence[Operation]) -> list[Operation]:
         """Operations of the pieces of one face, larger by what their passes machine of those without an axis."""

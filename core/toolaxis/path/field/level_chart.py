@@ -128,9 +128,12 @@ class LevelChart(FreeChart):
         uv, feed = self.clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
         here = self.field.at(uv).value
-        sides = [np.abs(self.field.at(self._aside(uv, feed, way)).value - here) for way in (-width[:, 1], width[:, 0])]
-        left_is_higher = self._left_is_higher(uv, feed)
-        return np.where(left_is_higher[:, None], np.column_stack(sides), np.column_stack(sides[::-1]))
+        at_right = self.field.at(self._aside(uv, feed, -width[:, 1])).value
+        at_left = self.field.at(self._aside(uv, feed, width[:, 0])).value
+        right = np.abs(at_right - here)
+        left = np.abs(at_left - here)
+        left_is_higher = self._left_is_higher(uv, feed)[:, None]
+        return np.where(left_is_higher, np.column_stack([right, left]), np.column_stack([left, right]))
 
     def _left_is_higher(self, uv: Array, feed: Array) -> Bools:
         """Whether the field grows to the left of the feed."""

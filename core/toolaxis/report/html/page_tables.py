@@ -48,11 +48,13 @@ def rows_of(made: rich.table.Table) -> Rows:
     ----------
     made : rich.table.Table
     """
+    title = str(made.title or "")
     headings = tuple(str(column.header).replace("-\n", "-").replace("\n", " ") for column in made.columns)
-    cells = [[str(cell) for cell in column.cells] for column in made.columns]
-    return Rows(str(made.title or ""), headings, tuple(zip(*cells, strict=True)),
-                tuple(column.justify == "right" for column in made.columns),
-                tuple(str(made.caption).splitlines()) if made.caption else ())
+    columns = [[str(cell) for cell in column.cells] for column in made.columns]
+    rows = tuple(zip(*columns, strict=True))
+    to_the_right = tuple(column.justify == "right" for column in made.columns)
+    notes = tuple(str(made.caption).splitlines()) if made.caption else ()
+    return Rows(title, headings, rows, to_the_right, notes)
 
 
 def _numbers(caption: str, headings: Sequence[tuple[str, bool]], rows: Sequence[Sequence[str]],

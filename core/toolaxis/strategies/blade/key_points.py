@@ -156,10 +156,13 @@ def _level_ends(free: AngleChannel, start: float, end: float, share: tuple[float
     """Where the level ends of a layer meet the first and the last line."""
     s = free.lengths
     longest = _LONGEST * float(s[-1] - s[0])
-    first = s[max(int(np.searchsorted(free.low, start, side="right")) - 1, 0)]
-    last = s[min(int(np.searchsorted(free.high, end)), len(s) - 1)]
-    return (float(s[0] + share[0] * min(float(first - s[0]), longest)),
-            float(s[-1] - share[1] * min(float(s[-1] - last), longest)))
+    first = int(np.searchsorted(free.low, start, side="right")) - 1
+    last = int(np.searchsorted(free.high, end))
+    room_at_start = float(s[max(first, 0)] - s[0])
+    room_at_end = float(s[-1] - s[min(last, len(s) - 1)])
+    leaves_first_line = s[0] + share[0] * min(room_at_start, longest)
+    meets_last_line = s[-1] - share[1] * min(room_at_end, longest)
+    return float(leaves_first_line), float(meets_last_line)
 
 
 def _out(free: AngleChannel, one: tuple[float, float], other: tuple[float, float]) -> tuple[float, int]:

@@ -215,8 +215,12 @@ def _along(flat: Array, ends: list[int], layers: list[ScheduledLayer]) -> Array:
 
 def _beside(path: ToolPath, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     """For each point the one whose axis it takes: itself, the next cut's for entries, the last one's else."""
-    at = np.arange(len(known))
-    last = np.maximum.accumulate(np.where(known, at, -1))
-    after = np.minimum.accumulate(np.where(known, at, len(known))[::-1])[::-1]
-    onward = (path.kind == Motion.ENTRY) | (last < 0)
-    return np.where(known, at, np.where(onward & (after < len(known)), after, np.maximum(last, 0)))
+    count = len(known)
+    at = np.arange(count)
+    known_or_first = np.where(known, at, -1)
+    known_or_end = np.where(known, at, count)
+    last = np.maximum.accumulate(known_or_first)
+    after = np.minimum.accumulate(known_or_end[::-1])[::-1]
+    onward = ((path.kind == Motion.ENTRY) | (last < 0)) & (after < count)
+    neighbour = np.where(onward, after, np.maximum(last, 0))
+    return np.where(known, at, neighbour)

@@ -349,11 +349,13 @@ class _Shapes:
 
 def _alongside(free: list[AngleChannel], wide: list[AngleChannel]) -> tuple[list[AngleChannel], list[AngleChannel]]:
     """Channels moved by whole turns, each beside the one before it."""
-    moved = [(free[0], wide[0])]
+    moved_free, moved_wide = [free[0]], [wide[0]]
     for one, other in zip(free[1:], wide[1:], strict=True):
-        turn = 2 * pi * round(float(moved[-1][0].high[0] - one.high[0]) / (2 * pi))
-        moved.append((_shift_channel(one, turn), _shift_channel(other, turn)))
-    return [row[0] for row in moved], [row[1] for row in moved]
+        apart = float(moved_free[-1].high[0] - one.high[0])
+        turn = 2 * pi * round(apart / (2 * pi))
+        moved_free.append(_shift_channel(one, turn))
+        moved_wide.append(_shift_channel(other, turn))
+    return moved_free, moved_wide
 
 
 def _shift_channel(one: AngleChannel, turn: float) -> AngleChannel:

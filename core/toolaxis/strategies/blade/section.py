@@ -93,8 +93,10 @@ def _make_section(rows: Array) -> Section:
     angle = np.arctan2(step[:, 1], step[:, 0])
     turn = (np.diff(angle, append=angle[:1]) + pi) % (2 * pi) - pi
     ahead = angle[0] + np.concatenate([[0.0], np.cumsum(turn)])
-    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*step.T))])
-    return Section(closed, lengths, ahead, np.concatenate([[ahead[-2] - 2 * pi], ahead[:-1]]))
+    behind = np.concatenate([[ahead[-2] - 2 * pi], ahead[:-1]])
+    size = np.hypot(step[:, 0], step[:, 1])
+    lengths = np.concatenate([[0.0], np.cumsum(size)])
+    return Section(closed, lengths, ahead, behind)
 
 
 def _check_closed(rows: Array, place: str) -> None:

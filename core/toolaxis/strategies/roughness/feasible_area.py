@@ -97,10 +97,12 @@ def evaluation_curvature(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], le
     **Source**: [dong2023] Eqs. (5) to (7).
     """
     along, across = torus_curvatures(tool, lean)
-    turn, angle = np.asarray(plane, dtype=float) - np.asarray(direction), np.asarray(plane, dtype=float)
+    angle = np.asarray(plane, dtype=float)
+    turn = angle - np.asarray(direction)
     k1, k2 = (np.asarray(k, dtype=float) for k in curvatures)
     cutter = along * np.cos(turn) ** 2 + across * np.sin(turn) ** 2
-    return np.asarray(cutter - (k1 * np.cos(angle) ** 2 + k2 * np.sin(angle) ** 2))
+    surface = k1 * np.cos(angle) ** 2 + k2 * np.sin(angle) ** 2
+    return np.asarray(cutter - surface)
 
 
 def critical_curvature(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: ArrayLike,
