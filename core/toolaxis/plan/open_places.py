@@ -90,11 +90,11 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
     left = [piece for piece in list_open_faces(plan) if piece.area >= LEAST]
     hidden = [area for area in plan.unplanned if area.why == HIDDEN and area.area >= LEAST]
     found = [_place(operations[piece.operation], piece) for piece in left]
-    found += [_hidden_place(area) for area in hidden]
+    found += [_place_beneath(area) for area in hidden]
     return tuple(sorted(found, key=lambda place: (-place.area, place.label)))
 
 
-def _hidden_place(area: UnplannedArea) -> OpenPlace:
+def _place_beneath(area: UnplannedArea) -> OpenPlace:
     """A place under another face of its skin: no tool was ever asked for it."""
     return OpenPlace(
         label=area.label,
