@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
+from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.parts import number_parts
 from toolaxis.numeric.vectors import lengths
 from toolaxis.progress import breathe
@@ -110,9 +111,9 @@ class NormalCells:
         lines_v = _grid_lines(data[1], v0, v1)
         nets = bezier_nets(data, lines_u, lines_v)
         bounds = derivative_bounds(nets, np.diff(lines_u), np.diff(lines_v), 2)
-        low_u, low_v = _pair(lines_u[:-1], lines_v[:-1])
-        high_u, high_v = _pair(lines_u[1:], lines_v[1:])
-        rect = np.stack([low_u, high_u, low_v, high_v], axis=1)
+        low = grid_rows(lines_u[:-1], lines_v[:-1])
+        high = grid_rows(lines_u[1:], lines_v[1:])
+        rect = np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
         crossed = np.full(len(rect), bool(self._edges))
         made, _ = self._make_cells(rect, bounds.reshape(-1, 3), crossed)
         return made
@@ -192,12 +193,6 @@ def _meet(start: Array, end: Array, middle: Array, half: Array) -> Bools:
     across = np.abs(centre[..., 0] * way_v - centre[..., 1] * way_u)
     apart |= across > half[..., 0] * size_v + half[..., 1] * size_u
     return np.asarray((~apart).any(axis=1))
-
-
-def _pair(u: Array, v: Array) -> tuple[Array, Array]:
-    """Both coordinates, (m n,) each, of all pairs of the one and the other; v changes fastest."""
-    every_u, every_v = np.meshgrid(u, v, indexing="ij")
-    return every_u.ravel(), every_v.ravel()
 
 
 def _grid_lines(knots: Array, low: float, high: float) -> Array:

@@ -59,24 +59,34 @@ def _vertices(values: Array, above: Bools, lines: tuple[Array, Array], function:
 
     above : of the nodes of the grid with one more around it, as are lines
     """
-    first, second = np.argwhere(above[1:] != above[:-1]), _by_columns(above[:, 1:] != above[:, :-1])
-    low = np.concatenate([first, second])
+    along_first = np.argwhere(above[1:] != above[:-1])
+    along_second = _by_columns(above[:, 1:] != above[:, :-1])
+    low = np.concatenate([along_first, along_second])
     if not len(low):
         return {}
-    along_second = np.arange(len(low)) >= len(first)
-    high = low + np.where(along_second[:, None], [0, 1], [1, 0])
+    high = np.concatenate([along_first + np.array([1, 0]), along_second + np.array([0, 1])])
     turned = ~above[low[:, 0], low[:, 1]][:, None]
-    inner, outside = np.where(turned, high, low), np.where(turned, low, high)
-    good, bad = (np.column_stack([lines[0][node[:, 0]], lines[1][node[:, 1]]]) for node in (inner, outside))
-    high_value, low_value = _values_at(values, inner), _values_at(values, outside)
+    inner = np.where(turned, high, low)
+    beyond = np.where(turned, low, high)
+    good = _places_of(inner, lines)
+    bad = _places_of(beyond, lines)
+    high_value = _values_at(values, inner)
+    low_value = _values_at(values, beyond)
     share = (high_value / (high_value - low_value))[:, None]
     # Beyond the grid's border there is nothing: lines run along it.
-    outer = ((outside == 0) | (outside == np.array(above.shape) - 1)).any(axis=1)
+    last = np.array(above.shape) - 1
+    outer = ((beyond == 0) | (beyond == last)).any(axis=1)
     points = np.where(outer[:, None], good, (1 - share) * good + share * bad)
     if function is not None and not outer.all():
         points[~outer] = _bisect(function, good[~outer], bad[~outer], halvings)
-    keys = zip(along_second.astype(int).tolist(), *low.T.tolist(), strict=True)
+    axis = [0] * len(along_first) + [1] * len(along_second)
+    keys = zip(axis, *low.T.tolist(), strict=True)
     return dict(zip(keys, points, strict=True))
+
+
+def _places_of(nodes: NDArray[np.int64], lines: tuple[Array, Array]) -> Array:
+    """Coordinates of nodes, (k, 2)."""
+    return np.column_stack([lines[0][nodes[:, 0]], lines[1][nodes[:, 1]]])
 
 
 def _by_columns(marked: Bools) -> NDArray[np.int64]:

@@ -42,7 +42,7 @@ class SweptBoxes:
         top = float(solid[5])
         wide = max(float(solid[0] + solid[1]), float(solid[6]))
         self.frame = np.column_stack([*perpendicular(axes[0]), axes[0]])
-        ends = np.stack([tips, tips + top * axes]) @ self.frame
+        tip, upper = tips @ self.frame, (tips + top * axes) @ self.frame
         first = np.arange(0, max(len(tips) - 1, 1), _TOGETHER)
         last = np.minimum(first + _TOGETHER, len(tips) - 1)  # where the next group begins
         # Within a motion the axis leaves the chord between its ends by no more than this.
@@ -51,7 +51,8 @@ class SweptBoxes:
         # The sine of the angle to the first axis, at most: so much of its radius a disc across the axis rises by.
         leans = min(np.linalg.norm(axes - axes[0], axis=1).max() + 2 * half_chord, 1.0)
         room = np.array([wide, wide, wide * leans]) + bulge + _ROUNDING
-        low, high = ends.min(axis=0), ends.max(axis=0)
+        low = np.minimum(tip, upper)
+        high = np.maximum(tip, upper)
         self.low = np.minimum(np.minimum.reduceat(low, first), low[last]) - room
         self.high = np.maximum(np.maximum.reduceat(high, first), high[last]) + room
 
@@ -67,7 +68,9 @@ class SweptBoxes:
         net = _net(face)
         if net is None:
             return True
-        low, high = (net @ self.frame).min(axis=0) - room, (net @ self.frame).max(axis=0) + room
+        seen = net @ self.frame
+        low = seen.min(axis=0) - room
+        high = seen.max(axis=0) + room
         return bool(((low <= self.high) & (high >= self.low)).all(axis=1).any())
 
 

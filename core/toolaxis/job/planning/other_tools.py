@@ -13,8 +13,8 @@ from toolaxis.tools.tool import Tool
 
 #: How many times the reckoned cutting time passes take, about: they run out, and their narrowest place sets the strip.
 _MADE = 1.4
-#: What other tools have to promise: a share of the cutting time that was made, and s; and on all such faces together a
-#: share of the time of the whole plan, as planning them once more takes as long as it did.
+#: What other tools have to promise of a face: a share of the cutting time that was made, and s.  And of all such faces
+#: together: a share of the time of the whole plan, as all of them are planned once more.
 _SHARE, _SECONDS, _OF_ALL = 0.2, 8.0, 0.1
 #: Share of a face's area that may stay open more.
 _SAME = 0.01
