@@ -257,7 +257,7 @@ def test_maps_show_what_is_beyond_the_limits(tmp_path: Path) -> None:
     good = colours_of(map_picture([judged(0.015, 0.0)], 0.02, 0.002, "op01"), tmp_path / "good.png")
     high = map_picture([judged(0.05, 0.004)], 0.02, 0.002, "op01")
     lost = map_picture([judged(np.inf, 0.0)], 0.02, 0.002, "op01")
-    assert high.axes[1].get_title() == "op01: gouge in the face, greatest 4.00 µm, allowed 2 µm"
+    assert high.axes[1].get_title() == "op01\ngouge in the face, greatest 4.00 µm, allowed 2 µm"
     assert len(colours_of(high, tmp_path / "high.png")) > 0 and len(good) > 0
     assert [t.get_text() for t in lost.axes[0].get_legend().get_texts()] == ["above 1.1 times the limit", "not reached"]
     assert [t.get_text() for t in high.axes[0].get_legend().get_texts()] == ["above 1.1 times the limit"]

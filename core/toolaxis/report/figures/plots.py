@@ -271,9 +271,9 @@ def map_picture(maps: Sequence[SurfaceMap], limit: float, gouge: float, name: st
     left, right = made.add_axes((0.02, 0.1, 0.38, 0.82)), made.add_axes((0.52, 0.1, 0.38, 0.82))
     _map_panel(left, (seen, seen.show(1000 * scallop), aside), ("scallop left, µm", 1000 * limit, "viridis"))
     _map_panel(right, (seen, seen.show(1000 * depth), np.zeros_like(aside)), ("gouge, µm", 1000 * gouge, "Blues"))
-    left.set_title(f"{name}: scallop left, limit {1000 * limit:g} µm", fontsize=10)
+    left.set_title(f"{name}\nscallop left, limit {1000 * limit:g} µm", fontsize=10)
     deepest = 1000 * float(depth.max())
-    right.set_title(f"{name}: gouge in the face, greatest {deepest:.2f} µm, allowed {1000 * gouge:g} µm", fontsize=10)
+    right.set_title(f"{name}\ngouge in the face, greatest {deepest:.2f} µm, allowed {1000 * gouge:g} µm", fontsize=10)
     return made
 
 
