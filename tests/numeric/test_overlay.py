@@ -18,6 +18,7 @@ from toolaxis.numeric.polygon_boolean import (
     without,
 )
 from toolaxis.numeric.polygons import inside, signed_area, slabs
+from toolaxis.numeric.sparse_grid import SparseGrid
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 
@@ -88,23 +89,38 @@ def test_contours_of_a_ring_lie_on_both_circles() -> None:
 
     line = np.linspace(-3, 3, 40)
     values = ring(np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)).reshape(40, 40)
-    loops = contours(values, (line, line), ring)
+    loops = contours(SparseGrid.of_all((line, line), values), ring)
     assert sorted(float(np.hypot(*loop.T).mean()) for loop in loops) == pytest.approx([0.9, 2.1], abs=1e-3)
     assert max(float(np.abs(ring(loop)).max()) for loop in loops) < 1e-6
     assert area(loops) == pytest.approx(np.pi * (2.1**2 - 0.9**2), rel=0.01)
 
 
+def test_nodes_below_zero_need_not_be_known_for_the_same_contours() -> None:
+    def waves(uv: np.ndarray) -> np.ndarray:
+        return np.sin(3 * uv[:, 0]) * np.cos(2.3 * uv[:, 1]) - 0.2
+
+    line = np.linspace(-3, 3, 61)
+    values = waves(np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2))
+    every = SparseGrid.of_all((line, line), values.reshape(61, 61))
+    some = np.flatnonzero(values > 0)
+    few = SparseGrid.join((line, line), [some[::2], some], [np.full(len(some[::2]), -9.0), values[some]])
+    assert few.above.tolist() == every.above.tolist()
+    assert (few.values_at(np.arange(61 * 61)) == np.where(values > 0, values, -1)).all()
+    for one, other in zip(contours(every, waves), contours(few, waves), strict=True):
+        assert (one == other).all()
+
+
 def test_contours_are_closed_along_the_border_of_the_grid() -> None:
     line = np.linspace(0, 1, 5)
-    (loop,) = contours(np.ones((5, 5)), (line, line))
+    (loop,) = contours(SparseGrid.of_all((line, line), np.ones((5, 5))))
     assert abs(signed_area(loop)) == pytest.approx(1)
-    assert contours(-np.ones((5, 5)), (line, line)) == ()
+    assert contours(SparseGrid.of_all((line, line), -np.ones((5, 5)))) == ()
 
 
 def test_a_saddle_gives_lines_that_do_not_cross() -> None:
     line = np.arange(4.0)
     values = np.where((np.indices((4, 4)).sum(axis=0) % 2) == 0, 1.0, -0.5)
-    loops = contours(values, (line, line))
+    loops = contours(SparseGrid.of_all((line, line), values))
     centre = np.array([[1.5, 1.5]])
     assert sum(int(inside(slabs((loop,)), centre)[0]) for loop in loops) % 2 == 1
 

@@ -13,6 +13,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.polygon_boolean import divide_polygon
+from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.shape.measure import mean_width
@@ -191,7 +192,7 @@ def _less(face: Face, solid: Solid) -> list[Face]:
         if not (depth > 0).any():
             return [face]
         try:
-            _, left = divide_polygon(face.outline, contours(depth, (lines[0], lines[1])))
+            _, left = divide_polygon(face.outline, contours(SparseGrid.of_all((lines[0], lines[1]), depth)))
         except InvalidInput:
             continue
         found = [face.trimmed(loops) for loops in outer_with_holes(left)]

@@ -5,24 +5,25 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.sparse_grid import SparseGrid
+
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 _STEPS = 24
 #: Corners of a cell, anticlockwise, and the edges between them: (di, dj) of a corner; edge k runs from k to k + 1.
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
-def contours(values: Array, lines: tuple[Array, Array],
-             function: Callable[[Array], Array] | None = None, halvings: int = _STEPS) -> tuple[Array, ...]:
+def contours(grid: SparseGrid, function: Callable[[Array], Array] | None = None,
+             halvings: int = _STEPS) -> tuple[Array, ...]:
     """Closed polygons around the places where a function is above zero.
 
     Parameters
     ----------
-    values : (m, n) array
+    grid : SparseGrid
         The function at the nodes of a grid; what is above zero on the grid's border is closed along the border.
-    lines : pair of (m,) and (n,) arrays
-        Coordinates of the grid.
     function : callable, optional
         Takes (k, 2) points and returns (k,) values: vertices are put where it vanishes, by bisection, instead of where
         a straight line between the nodes does.
@@ -36,31 +37,25 @@ def contours(values: Array, lines: tuple[Array, Array],
 
     **Properties**: 1. no two polygons cross; 2. every vertex lies on a line of the grid.
     """
-    x, y = (np.concatenate([line[:1], line, line[-1:]]) for line in lines)
-    above = np.zeros((len(x), len(y)), dtype=bool)
-    above[1:-1, 1:-1] = values > 0
-    left_low = above[:-1, :-1]
-    right_low = above[1:, :-1]
-    right_high = above[1:, 1:]
-    left_high = above[:-1, 1:]
-    cells = np.argwhere((left_low != right_low) | (right_low != right_high) | (right_high != left_high))
-    at = _vertices(values, above, (x, y), function, halvings)
+    above = grid.mark_above()
+    at = _vertices(grid, above, function, halvings)
     joined: dict[tuple[int, int, int], list[tuple[int, int, int]]] = {}
-    for i, j in cells.tolist():
-        for one, other in _segments(values, above, i, j):
+    for i, j in grid.cells_on_border().tolist():
+        for one, other in _segments(grid, above, i, j):
             joined.setdefault(one, []).append(other)
             joined.setdefault(other, []).append(one)
     return _trace_lines(joined, at)
 
 
-def _vertices(values: Array, above: Bools, lines: tuple[Array, Array], function: Callable[[Array], Array] | None,
+def _vertices(grid: SparseGrid, above: Bools, function: Callable[[Array], Array] | None,
               halvings: int) -> dict[tuple[int, int, int], Array]:
     """Where edges of the grid cross zero, by axis along which the edge runs and its lower node.
 
-    above : of the nodes of the grid with one more around it, as are lines
+    above : of the nodes of the grid with one more around it
     """
-    along_first = np.argwhere(above[1:] != above[:-1])
-    along_second = _by_columns(above[:, 1:] != above[:, :-1])
+    along_first = _crossed_edges(grid, above, (1, 0))
+    along_second = _crossed_edges(grid, above, (0, 1))
+    along_second = along_second[np.lexsort(along_second.T)]  # one column after the other
     low = np.concatenate([along_first, along_second])
     if not len(low):
         return {}
@@ -68,10 +63,10 @@ def _vertices(values: Array, above: Bools, lines: tuple[Array, Array], function:
     turned = ~above[low[:, 0], low[:, 1]][:, None]
     inner = np.where(turned, high, low)
     beyond = np.where(turned, low, high)
-    good = _places_of(inner, lines)
-    bad = _places_of(beyond, lines)
-    high_value = _values_at(values, inner)
-    low_value = _values_at(values, beyond)
+    good = _places_of(grid, inner)
+    bad = _places_of(grid, beyond)
+    high_value = _values_at(grid, inner)
+    low_value = _values_at(grid, beyond)
     share = (high_value / (high_value - low_value))[:, None]
     # Beyond the grid's border there is nothing: lines run along it.
     last = np.array(above.shape) - 1
@@ -84,22 +79,29 @@ def _vertices(values: Array, above: Bools, lines: tuple[Array, Array], function:
     return dict(zip(keys, points, strict=True))
 
 
-def _places_of(nodes: NDArray[np.int64], lines: tuple[Array, Array]) -> Array:
-    """Coordinates of nodes, (k, 2)."""
-    return np.column_stack([lines[0][nodes[:, 0]], lines[1][nodes[:, 1]]])
+def _crossed_edges(grid: SparseGrid, above: Bools, step: tuple[int, int]) -> Ints:
+    """Lower nodes of the edges along one coordinate that cross zero, one row after the other, (k, 2)."""
+    node = np.column_stack(np.divmod(grid.above, grid.shape[1])) + 1
+    before = node - step
+    behind = node + step
+    last = ~above[behind[:, 0], behind[:, 1]]
+    first = ~above[before[:, 0], before[:, 1]]
+    low = np.concatenate([node[last], before[first]])
+    return np.asarray(low[np.lexsort(low.T[::-1])])
 
 
-def _by_columns(marked: Bools) -> NDArray[np.int64]:
-    """Rows and columns of what is marked, one column after the other, (k, 2)."""
-    found = np.argwhere(marked)
-    return np.asarray(found[np.lexsort(found.T)])
+def _places_of(grid: SparseGrid, nodes: Ints) -> Array:
+    """Coordinates of nodes, (k, 2), of the grid with one more around it, which lie where its border does."""
+    x, y = grid.lines
+    return np.column_stack([x[np.clip(nodes[:, 0] - 1, 0, len(x) - 1)], y[np.clip(nodes[:, 1] - 1, 0, len(y) - 1)]])
 
 
-def _values_at(values: Array, nodes: NDArray[np.int64]) -> Array:
-    """Values at nodes (k, 2) of the grid with one more around it, where they are -1."""
-    inside = ((nodes > 0) & (nodes <= values.shape)).all(axis=1)
+def _values_at(grid: SparseGrid, nodes: Ints) -> Array:
+    """Values at nodes, (k, 2), of the grid with one more around it, where they are -1."""
+    rows, columns = grid.shape
+    inside = ((nodes > 0) & (nodes <= (rows, columns))).all(axis=1)
     found = np.full(len(nodes), -1.0)
-    found[inside] = values[nodes[inside, 0] - 1, nodes[inside, 1] - 1]
+    found[inside] = grid.values_at((nodes[inside, 0] - 1) * columns + nodes[inside, 1] - 1)
     return found
 
 
@@ -112,7 +114,7 @@ def _bisect(function: Callable[[Array], Array], good: Array, bad: Array, halving
     return (good + bad) / 2
 
 
-def _segments(values: Array, above: Bools, i: int,
+def _segments(grid: SparseGrid, above: Bools, i: int,
               j: int) -> list[tuple[tuple[int, int, int], tuple[int, int, int]]]:
     """Pieces of the line through one cell; where all four edges are crossed, the mean of the corners decides."""
     edges = ((0, i, j), (1, i + 1, j), (0, i, j + 1), (1, i, j))
@@ -122,7 +124,7 @@ def _segments(values: Array, above: Bools, i: int,
         first, second = crossed
         return [(edges[first], edges[second])]
     around = np.array([(i + a, j + b) for a, b in _CORNERS])
-    middle = float(_values_at(values, around).sum()) > 0
+    middle = float(_values_at(grid, around).sum()) > 0
     if middle != corner[1]:
         return [(edges[0], edges[1]), (edges[2], edges[3])]
     return [(edges[3], edges[0]), (edges[1], edges[2])]

@@ -12,6 +12,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.polygon_boolean import divide_polygon
+from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.partition.cost_grid import CostGrid
 from toolaxis.partition.face_division import Divider, DivisionRow, Regions, Solution, name_pieces
 from toolaxis.partition.guillotine import Corners
@@ -199,7 +200,8 @@ def _split(face: Face, loops: Loops, function: Distance) -> tuple[Loops, Loops]:
         beyond = 0.0317 + 0.0041 * attempt
         lines = tuple(np.linspace(a - beyond * (b - a), b + beyond * (b - a), _GRID) for a, b in ((u0, u1), (v0, v1)))
         nodes = grid_nodes(*lines)
-        line = contours(function(nodes.reshape(-1, 2)).reshape(_GRID, _GRID), (lines[0], lines[1]), function)
+        values = function(nodes.reshape(-1, 2)).reshape(_GRID, _GRID)
+        line = contours(SparseGrid.of_all((lines[0], lines[1]), values), function)
         try:
             return divide_polygon(loops, line)
         except InvalidInput:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.grids import grid_nodes
 from toolaxis.numeric.parts import number_parts
+from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
@@ -37,8 +38,8 @@ _AROUND = np.array([[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1]
 
 def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
                 whole: Callable[[Array, Array], Bools], between: Array | None = None,
-                most: int = FINE) -> tuple[Lines, Array]:
-    """A grid somewhat beyond a face, and a function at its nodes, as far as cells around hold something above zero.
+                most: int = FINE) -> SparseGrid:
+    """A function at nodes of a grid somewhat beyond a face, as far as cells around hold something above zero.
 
     Parameters
     ----------
@@ -57,10 +58,8 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
 
     Returns
     -------
-    lines : pair of (m,) and (n,) arrays
-        Parameters u and v of the nodes.
-    values : (m, n) array
-        -1 where it was not asked.
+    SparseGrid
+        Over the parameters u and v, with the nodes at which it was asked.
     """
     coarse_u, parts_u = _lines(face, 0, size, most)
     coarse_v, parts_v = _lines(face, 1, size, most)
@@ -76,7 +75,7 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     places = np.concatenate(asked)
     wanted[_cells_of(coarse, places[function(places) > 0])] = True
     lines = (_divide_line(coarse_u, parts_u), _divide_line(coarse_v, parts_v))
-    values = np.full((len(lines[0]), len(lines[1])), -1.0)
+    found = _Asked(function, whole, lines)
     own = _own(face, coarse, inside)
     done = np.zeros_like(wanted)
     while wanted.any():
@@ -84,42 +83,43 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
         cells = np.argwhere(wanted)
         first = cells * (parts_u, parts_v)
         last = (cells + 1) * (parts_u, parts_v)
-        _ask(function, whole, lines, values, np.hstack([first, last]))
+        found.ask(np.hstack([first, last]))
         for (i, j), (i0, j0), (i1, j1) in zip(cells, first, last, strict=True):
-            _go_on(values[i0:i1 + 1, j0:j1 + 1] > 0, (int(i), int(j)), further)
+            _go_on(found.above[i0:i1 + 1, j0:j1 + 1], (int(i), int(j)), further)
         done |= wanted
         wanted = further & own & ~done
-    return lines, values
+    return SparseGrid.join(lines, found.nodes, found.values)
 
 
-def sample_again(lines: Lines, values: Array, function: Callable[[Array], Array],
-                 whole: Callable[[Array, Array], Bools]) -> Array:
+def sample_again(grid: SparseGrid, function: Callable[[Array], Array],
+                 whole: Callable[[Array, Array], Bools]) -> SparseGrid:
     """The lesser of a function at the nodes of a grid and of what was found there before, where that is above zero.
 
     Parameters
     ----------
-    lines, values
+    grid : SparseGrid
         As from `sample_grid`.
     function, whole
         As for `sample_grid`.
-
-    Returns
-    -------
-    (m, n) array
     """
-    above = values > 0
-    last_row = values.shape[0] - 1
-    last_column = values.shape[1] - 1
-    rows = np.arange(0, last_row, _BLOCK)
-    columns = np.arange(0, last_column, _BLOCK)
-    in_rows = np.add.reduceat(above.astype(np.int64), rows, axis=0)
-    i, j = np.nonzero(np.add.reduceat(in_rows, columns, axis=1))
-    row_ends = np.append(rows[1:], last_row)
-    column_ends = np.append(columns[1:], last_column)
-    blocks = np.column_stack([rows[i], columns[j], row_ends[i], column_ends[j]])
-    found = values.copy()
-    _ask(function, whole, lines, found, blocks, above)
-    return np.where(above, np.minimum(values, found), values)
+    rows, columns = grid.shape
+    # The last node of a block is the first of the next one, and the last line of the grid begins none.
+    across = (columns - 2) // _BLOCK + 1
+    row, column = np.divmod(grid.above, columns)
+    i = np.minimum(row // _BLOCK, (rows - 2) // _BLOCK)
+    j = np.minimum(column // _BLOCK, across - 1)
+    block_row, block_column = np.divmod(np.unique(i * across + j), across)
+    first = np.column_stack([block_row, block_column]) * _BLOCK
+    last = np.minimum(first + _BLOCK, (rows - 1, columns - 1))
+    found = _Asked(function, whole, grid.lines, among=grid.above)
+    found.ask(np.hstack([first, last]))
+    values = grid.values.copy()
+    new = SparseGrid.join(grid.lines, found.nodes, found.values)
+    above = np.flatnonzero(values > 0)
+    known = np.isin(grid.nodes[above], new.nodes, assume_unique=True)
+    seen = above[known]
+    values[seen] = np.minimum(values[seen], new.values_at(grid.nodes[seen]))
+    return SparseGrid(grid.lines, grid.nodes, values)
 
 
 def _touches_corner(nodes: Bools) -> Bools:
@@ -127,43 +127,61 @@ def _touches_corner(nodes: Bools) -> Bools:
     return np.asarray(nodes[1:, 1:] | nodes[:-1, 1:] | nodes[1:, :-1] | nodes[:-1, :-1])
 
 
-def _ask(function: Callable[[Array], Array], whole: Callable[[Array, Array], Bools], lines: Lines, values: Array,
-         blocks: Ints, among: Bools | None = None) -> None:
-    """Put the function at all nodes of blocks, (k, 4) first and last lines of each, into values; 1 where it is sure.
+class _Asked:
+    """What a function says at nodes of a grid.
 
-    Of the nodes that are not sure it is asked only among some, (m, n) bool, where these are given.
+    nodes : list of (k,) arrays of int, their numbers;  values : list of (k,) arrays, 1 where it is sure to be above
+    zero;  above : (m, n) array of bool, of all that was asked last.
     """
-    small_ones = []
-    while len(blocks):
-        small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
-        small_ones.append(blocks[small])
-        blocks = blocks[~small]
-        low = np.column_stack([line[blocks[:, k]] for k, line in enumerate(lines)])
-        high = np.column_stack([line[blocks[:, k + 2]] for k, line in enumerate(lines)])
-        around = low[:, None] + _AROUND * (high - low)[:, None]
-        sure = whole((low + high) / 2, around)
-        for i0, j0, i1, j1 in blocks[sure]:
-            values[i0:i1 + 1, j0:j1 + 1] = 1.0
-        blocks = _quarters(blocks[~sure])
-    i, j = _nodes_of(small_ones, values.shape[1])
-    if among is not None:
-        asked = among[i, j]
-        i, j = i[asked], j[asked]
-    values[i, j] = function(np.column_stack([lines[0][i], lines[1][j]]))
+
+    def __init__(self, function: Callable[[Array], Array], whole: Callable[[Array, Array], Bools], lines: Lines,
+                 among: Ints | None = None) -> None:
+        """Of the nodes that are not sure it is asked only among some, ascending, where these are given."""
+        self._function, self._whole, self._lines, self._among = function, whole, lines, among
+        self.nodes: list[Ints] = []
+        self.values: list[Array] = []
+        # Nobody writes to most of it, and pages without writing cost nothing.
+        self.above = np.zeros((len(lines[0]), len(lines[1])), dtype=bool)
+
+    def ask(self, blocks: Ints) -> None:
+        """Ask at all nodes of blocks, (k, 4) first and last lines of each."""
+        columns = self.above.shape[1]
+        small_ones = []
+        while len(blocks):
+            small = (blocks[:, 2:] - blocks[:, :2]).max(axis=1) <= _SMALL
+            small_ones.append(blocks[small])
+            blocks = blocks[~small]
+            low = np.column_stack([line[blocks[:, k]] for k, line in enumerate(self._lines)])
+            high = np.column_stack([line[blocks[:, k + 2]] for k, line in enumerate(self._lines)])
+            around = low[:, None] + _AROUND * (high - low)[:, None]
+            sure = self._whole((low + high) / 2, around)
+            for i0, j0, i1, j1 in blocks[sure]:
+                nodes = np.arange(i0, i1 + 1)[:, None] * columns + np.arange(j0, j1 + 1)
+                self._keep(nodes.ravel(), np.ones(nodes.size))
+            blocks = _quarters(blocks[~sure])
+        nodes = _nodes_of(small_ones, columns)
+        if self._among is not None:
+            nodes = nodes[np.isin(nodes, self._among, assume_unique=True)]
+        row, column = np.divmod(nodes, columns)
+        self._keep(nodes, self._function(np.column_stack([self._lines[0][row], self._lines[1][column]])))
+
+    def _keep(self, nodes: Ints, values: Array) -> None:
+        self.nodes.append(nodes)
+        self.values.append(values)
+        self.above.ravel()[nodes] = values > 0
 
 
-def _nodes_of(blocks: list[Ints], columns: int) -> tuple[Ints, Ints]:
-    """Rows and columns of all nodes of small blocks, each once, in their order; a grid may have millions of others."""
+def _nodes_of(blocks: list[Ints], columns: int) -> Ints:
+    """Numbers of all nodes of small blocks, each once, ascending; a grid may have millions of others."""
     if not blocks:
-        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+        return np.empty(0, dtype=np.int64)
     i0, j0, i1, j1 = np.concatenate(blocks).T
     found = []
     for down in range(_SMALL + 1):
         for across in range(_SMALL + 1):
             there = (i0 + down <= i1) & (j0 + across <= j1)
             found.append((i0[there] + down) * columns + j0[there] + across)
-    i, j = np.divmod(np.unique(np.concatenate(found)), columns)
-    return i, j
+    return np.unique(np.concatenate(found))
 
 
 def _quarters(blocks: Ints) -> Ints:

@@ -15,6 +15,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.polygon_boolean import divide_nearly, divide_polygon, join_touching, without
 from toolaxis.numeric.polygons import polygon_area
+from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.path.rest_grid import FINE, sample_again, sample_grid
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
@@ -127,13 +128,11 @@ class Excess:
 class _RestSeen:
     """What was seen when it was looked at some passes.
 
-    motions : frozenset of bytes, the cutting motions;  lines : pair of (m,) and (n,) arrays, of the grid;
-    values : (m, n) array, above zero where something is left.
+    motions : frozenset of bytes, the cutting motions;  grid : SparseGrid, above zero where something is left.
     """
 
     motions: frozenset[bytes]
-    lines: tuple[Array, Array]
-    values: Array
+    grid: SparseGrid
 
 
 @dataclass(eq=False)
@@ -217,11 +216,11 @@ class RestFinder:
         self.progress.check()
         high = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop)
         look = self._last = self._look(path, high)
-        nodes = _above(look.lines, look.values)
+        nodes = look.grid.places_of(look.grid.above)
         if not len(nodes):
             return ()
         self.progress.check()
-        found = contours(look.values, look.lines, high, _halvings(self.face, self.tool, self.scallop))
+        found = contours(look.grid, high, _halvings(self.face, self.tool, self.scallop))
         self.progress.check()
         return self._zones_in(found, path, nodes)
 
@@ -231,19 +230,18 @@ class RestFinder:
         rows = _name_motions(starts, ends)
         motions = frozenset(rows)
         if self._last is None or not self._last.motions <= motions:
-            return _RestSeen(motions, *self._sample(high))
+            return _RestSeen(motions, self._sample(high))
         new = np.array([row not in self._last.motions for row in rows])
         fresh = Excess(self.face, self.tool, path, self.allowance + FACTOR * self.scallop, (starts[new], ends[new]))
-        lines, values = self._last.lines, self._last.values
-        return _RestSeen(motions, lines, sample_again(lines, values, fresh, fresh.whole))
+        return _RestSeen(motions, sample_again(self._last.grid, fresh, fresh.whole))
 
-    def _sample(self, high: Excess) -> tuple[tuple[Array, Array], Array]:
+    def _sample(self, high: Excess) -> SparseGrid:
         """A grid as fine as the border of the zones asks for, and what is left at its nodes."""
         face, size = self.face, _size(self.face, self.tool, self.scallop)
-        lines, values = sample_grid(face, high, size, high.whole, self.between)
-        on_border = _share_on_border(face, lines, values)
-        if max(values.shape) < FINE or on_border <= _ON_BORDER:
-            return lines, values
+        grid = sample_grid(face, high, size, high.whole, self.between)
+        on_border = _share_on_border(face, grid)
+        if max(grid.shape) < FINE or on_border <= _ON_BORDER:
+            return grid
         self.progress.check()
         most = min(round(FINE * on_border / _ON_BORDER), _FINEST)
         return sample_grid(face, high, size, high.whole, self.between, most)
@@ -395,21 +393,15 @@ def _halvings(face: Face, tool: Tool, scallop: float) -> int:
     return max(1, int(np.ceil(np.log2(_size(face, tool, scallop) / _CLOSE))))
 
 
-def _share_on_border(face: Face, lines: tuple[Array, Array], values: Array) -> float:
+def _share_on_border(face: Face, grid: SparseGrid) -> float:
     """Area of the cells on the border of what is above zero, as a share of what of the face is not above zero."""
-    above = values > 0
-    corners = above[1:, 1:].astype(np.int8) + above[1:, :-1] + above[:-1, 1:] + above[:-1, :-1]
-    cell = float(np.diff(lines[0]).mean() * np.diff(lines[1]).mean())
-    border = cell * np.count_nonzero((corners > 0) & (corners < 4))
+    cells = grid.cells_on_border()
+    within = ((cells > 0) & (cells < grid.shape)).all(axis=1)
+    cell = float(np.diff(grid.lines[0]).mean() * np.diff(grid.lines[1]).mean())
+    border = cell * np.count_nonzero(within)
     whole = sum(map(polygon_area, outer_with_holes(face.outline)))
-    machined = whole - cell * np.count_nonzero(above)
+    machined = whole - cell * len(grid.above)
     return float(border / max(machined, cell))
-
-
-def _above(lines: tuple[Array, Array], values: Array) -> Array:
-    """Nodes of the grid that are above zero, (n, 2)."""
-    at = np.argwhere(values > 0)
-    return np.column_stack([lines[0][at[:, 0]], lines[1][at[:, 1]]])
 
 
 def _deep(zone: Face, deep: Excess, nodes: Array) -> bool:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.simplify_polyline import simplify_loop
+from toolaxis.numeric.sparse_grid import SparseGrid
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -58,7 +59,7 @@ class CellBorders:
         value = np.pad(np.where(own, 1.0, -1.0)[self._nearest], 2, mode="edge")
         faded = gaussian_filter(value, _BLUR, mode="nearest")
         for edge in _EDGES:
-            loops = contours(faded - edge, self._lines)
+            loops = contours(SparseGrid.of_all(self._lines, faded - edge))
             yield tuple(loop[simplify_loop(loop / self._size, _STRAIGHT)] for loop in loops)
 
 

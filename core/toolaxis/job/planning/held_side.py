@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
+from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.path.rest_material import split
 from toolaxis.plan.held_face import HeldFace
 from toolaxis.shape.face import Face
@@ -54,7 +55,7 @@ def cut_face(face: Face, held: HalfSpace | None) -> Face | None:
         return face
     if (on_face > 0).all():
         return None
-    _, free = split(face.outline, contours(values, lines, depth))
+    _, free = split(face.outline, contours(SparseGrid.of_all(lines, values), depth))
     left = face.trimmed(free) if free else None
     return left if left is not None and left.area >= _LEAST else None
 
