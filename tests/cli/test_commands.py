@@ -10,6 +10,7 @@ import time
 from functools import partial
 from math import radians
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -209,6 +210,37 @@ def test_ctrl_c_twice_leaves_nothing(sheet: Path, tmp_path: Path) -> None:
     assert process.returncode == 130 and "Traceback" not in err
     left = list(tmp_path.iterdir())
     assert left == [] or strict((tmp_path / "out" / "plan.json").read_text())["outcome"] == "cancelled"
+
+
+def test_a_plan_ends_when_its_minutes_are_over_and_keeps_finished_faces(sheet: Path, tmp_path: Path, capsys: Capture,
+                                                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    from toolaxis.cli.stopping import TimeLimit
+    from toolaxis.job.planning.planner import PlanningJob
+
+    begun: list[int] = []
+    plan_one = PlanningJob._operation
+
+    def count(self: PlanningJob, *rest: Any) -> Any:
+        begun.append(1)
+        return plan_one(self, *rest)
+
+    monkeypatch.setattr(PlanningJob, "_operation", count)
+    monkeypatch.setattr(TimeLimit, "is_up", lambda self: len(begun) > 1)
+    out = tmp_path / "out"
+    assert main(["plan", str(sheet), *FAST, "--faces=1,2", "--workers=1", "--minutes=5", "--out", str(out)]) == 1
+    assert "5 min were over" in capsys.readouterr().err
+    document = strict((out / "plan.json").read_text())
+    assert document["outcome"] == "cancelled" and [op["face"] for op in document["operations"]] == [1]
+    assert (out / "op01-face1-passes.png").exists()
+    begun.append(1)
+    assert main(["plan", str(sheet), *FAST, "--faces=1", "--minutes=5", "--out", str(tmp_path / "none")]) == 1
+    assert "no face was finished within 5 min" in capsys.readouterr().err
+    assert not (tmp_path / "none").exists()
+
+
+def test_minutes_have_to_be_above_zero(sheet: Path, capsys: Capture) -> None:
+    assert main(["plan", str(sheet), "--minutes=0"]) == 2
+    assert "minutes is 0: it must be above zero" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("reason, said", [(RuntimeError("no ink"), "RuntimeError: no ink"),

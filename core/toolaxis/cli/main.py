@@ -186,6 +186,9 @@ def _add_search_options(sub: _Parser) -> None:
                           "of bounds of distances, not in seconds, so that the plan is the same on every machine; an "
                           f"axis that moves is allowed {MOVING:.0f} times that (default: {LIMIT:.0f}, about half a "
                           "minute on one core)")
+    sub.add_argument("--minutes", type=float, metavar="MIN",
+                     help="stop planning after so many minutes and keep what is finished, the large tools and the "
+                          "large sub-surfaces first; how far it comes depends on the machine (default: no limit)")
 
 
 def _add_other_options(sub: _Parser) -> None:

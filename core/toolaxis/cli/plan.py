@@ -8,8 +8,8 @@ from pathlib import Path
 
 from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.cli.stopping import writing
-from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
+from toolaxis.cli.stopping import TimeLimit, writing
+from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput, JobError
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec, parse_allowances, parse_avoided
 from toolaxis.job.inputs.tool_library import load_library
@@ -41,8 +41,9 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     Returns
     -------
     int
-        0 where every sub-surface has an axis, 1 where one has none, 130 where the user stopped it.
+        0 where every sub-surface has an axis, 1 where one has none or the time was up, 130 where the user stopped it.
     """
+    late = TimeLimit(given.minutes)
     spec = _spec(given)
     tool = _tools(given, spec)
     one = tool if isinstance(tool, Tool) else None
@@ -55,7 +56,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         from toolaxis.job.planning.parallel import check_workers
         from toolaxis.job.planning.pipeline import plan
 
-        with compiling_ahead(), show_progress(asked) as progress:
+        with compiling_ahead(), show_progress(lambda: asked() or late.is_up()) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=given.objective, allowance=spec.inputs.allowance, stock=spec.inputs.stock,
@@ -70,16 +71,20 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         allowance_on=spec.inputs.allowance_on, lead=spec.inputs.lead,
                         origin=spec.inputs.origin, stock_box=spec.inputs.stock_box,
                         progress=progress)
-            if made.outcome == "cancelled" and not made.operations:
-                say("toolaxis: no face was finished: nothing is written")
+        stopped = made.outcome == "cancelled" and asked()
+        if made.outcome == "cancelled" and not made.operations:
+            say("toolaxis: no face was finished: nothing is written")
+            if stopped:
                 raise Cancelled("cancelled by the user")
-            with writing():
-                made = write_plan(made, stage.folder)
-            if not given.no_pictures and made.outcome != "cancelled":
+            raise JobError("plan", str(given.part), f"no face was finished within {given.minutes:g} min (--minutes)")
+        with writing():
+            made = write_plan(made, stage.folder)
+        if not given.no_pictures and not stopped:
+            with show_progress(asked) as progress:
                 _draw(made, stage.folder, progress, check_workers(given.workers))
         with writing():
             stage.publish(OF_PLAN)
-    return _print_plan(made, given)
+    return _print_plan(made, given, stopped)
 
 
 def _spec(given: Namespace) -> Spec:
@@ -142,7 +147,7 @@ def _draw(made: Plan, folder: Path, progress: Progress, workers: int) -> None:
         say(f"toolaxis: warning: pictures are missing ({type(reason).__name__}: {reason}); the plan is whole")
 
 
-def _print_plan(made: Plan, given: Namespace) -> int:
+def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     """Print what was made and turn its outcome into the exit code."""
     for warning in made.part.warnings:
         say(f"toolaxis: warning: {warning}")
@@ -187,8 +192,9 @@ def _print_plan(made: Plan, given: Namespace) -> int:
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
     if made.outcome == "cancelled":
-        say(f"toolaxis: stopped before all faces were done; {Path(given.out) / PLAN} holds those that were")
-        return 130
+        why = "" if stopped else f" as {given.minutes:g} min were over (--minutes)"
+        say(f"toolaxis: stopped before all faces were done{why}; {Path(given.out) / PLAN} holds those that were")
+        return 130 if stopped else 1
     return 0 if made.outcome == "complete" else 1
 
 
