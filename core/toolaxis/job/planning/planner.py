@@ -68,7 +68,7 @@ Array = NDArray[np.float64]
 REFUSED = "shared axis refused: "
 #: How many times the limit of work a sub-surface is allowed by its share of the area of a plan with several tools, at
 #: least and at most; and how many times besides for the passes of an axis that was found.
-_WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.5, 4.0, 1.5
+_WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.25, 4.0, 1.5
 #: Share of a face that its pieces may machine less of it than one axis does.
 _SAME_AREA = 1e-3
 #: Time from which on a sub-surface is divided before it is planned whole, s, and what is told of it until then.
