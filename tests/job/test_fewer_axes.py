@@ -7,7 +7,7 @@ import pytest
 
 import toolaxis as ta
 from toolaxis.job.planning import other_tools, rack, share_axes
-from toolaxis.job.planning.other_tools import ReckonedTimes, seconds_of, takes_less_time
+from toolaxis.job.planning.other_tools import ReckonedTimes, may_take_less_time, seconds_of, takes_less_time
 from toolaxis.job.planning.share_axes import share_axes as share
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.numeric.vectors import unit
@@ -127,6 +127,12 @@ def test_what_takes_as_long_or_machines_less_is_not_taken(large_first: None, mon
     assert takes_less_time([quick], [slow], none, inputs) and not takes_less_time([slow], [quick], none, inputs)
     assert not takes_less_time([less], [slow], none, inputs) and not takes_less_time([quick], [quick], none, inputs)
     assert seconds_of([quick], none, inputs) == pytest.approx(seconds_of([quick], frozenset([quick.tool]), inputs) + 10)
+    # With half of it done in a time t, the other half is reckoned to take half as long as the slow one.
+    half = replace(quick, orientation=replace(quick.orientation, unreached=0.5))
+    t, whole = (seconds_of([op], none, inputs) for op in (half, slow))
+    assert may_take_less_time([], [slow], [], inputs) and not may_take_less_time([slow], [slow], [], inputs)
+    assert may_take_less_time([half], [slow], [], inputs) == (t + 0.5 * whole < 0.9 * whole)
+    assert not may_take_less_time([replace(half, tool=slow.tool), half, half], [slow], [slow.tool], inputs)
 
 
 def test_a_choice_keeps_what_it_reckoned_for_each_face() -> None:

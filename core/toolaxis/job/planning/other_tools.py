@@ -16,6 +16,8 @@ _MADE = 1.4
 #: What other tools have to promise of a face: a share of the cutting time that was made, and s.  And of all such faces
 #: together: a share of the time of the whole plan, as all of them are planned once more.
 _SHARE, _SECONDS, _OF_ALL = 0.2, 8.0, 0.1
+#: Share of the cutting time of a face that its other tools have to promise still when some of them are done.
+_STILL = 0.1
 #: Share of a face's area that may stay open more.
 _SAME = 0.01
 
@@ -124,6 +126,31 @@ def takes_less_time(one: Sequence[Operation], other: Sequence[Operation], tools:
     if area_machined(one) < area_machined(other) - _SAME * area:
         return False
     return seconds_of(one, tools, inputs) <= seconds_of(other, tools, inputs) - INDEX_SECONDS
+
+
+def may_take_less_time(one: Sequence[Operation], other: Sequence[Operation], still: Collection[Tool],
+                       inputs: PlanInputs) -> bool:
+    """Whether some operations, with those that are yet to come, may take much less time than others on the same face.
+
+    What is yet to come is reckoned to take as long for its area as with the others.
+
+    Parameters
+    ----------
+    one, other : sequence of Operation
+        The first of them, which are made; and all others.
+    still : collection of Tool
+        That are yet to come.
+    inputs : PlanInputs
+    """
+    made = [op for op in one if op.done]
+    if not made:
+        return True
+    whole = [op for op in other if op.done]
+    later = [op for op in whole if op.tool in still] or whole
+    left = max(area_machined(whole) - area_machined(made), 0.0)
+    spent = seconds_of(whole, frozenset(), inputs)
+    rate = seconds_of(later, tools_of(later), inputs) / max(area_machined(later), 1e-9)
+    return seconds_of(made, frozenset(), inputs) + rate * left <= spent - max(_SECONDS, _STILL * spent)
 
 
 def _likely_seconds(chain: ToolChain) -> float:

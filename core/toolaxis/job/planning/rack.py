@@ -1,7 +1,7 @@
 """A part planned with a rack of tools: which tool begins where, and which finishes what others leave."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from toolaxis.job.planning.face_by_face import area_machined, compare_areas, is_
 from toolaxis.job.planning.face_copies import refuse_copy
 from toolaxis.job.planning.failures import fail_face
 from toolaxis.job.planning.held_side import cut_face
-from toolaxis.job.planning.other_tools import ReckonedTimes, takes_less_time, tools_of
+from toolaxis.job.planning.other_tools import ReckonedTimes, may_take_less_time, takes_less_time, tools_of
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob, with_fault
 from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
@@ -108,11 +108,19 @@ class RackPlanner:
                     self._rests += _rests_not_begun(one, one.area)
             return self._put_together("cancelled")
 
-    def _with_all_tools(self, faces: Sequence[Face], progress: Progress) -> bool:
-        """Plan faces with the tools that are chosen for them; False where the user stopped it."""
+    def _with_all_tools(self, faces: Sequence[Face], progress: Progress,
+                        goes_on: Callable[[Face, int], bool] | None = None) -> bool:
+        """Plan faces with the tools that are chosen for them; False where the user stopped it.
+
+        goes_on : takes a face and the number of a tool that is done with it, and tells whether others follow
+        """
         self._begin(faces, progress)
-        return all(self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name))
-                   for tool, job in enumerate(self.jobs))
+        for tool, job in enumerate(self.jobs):
+            if not self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name)):
+                return False
+            if goes_on is not None:
+                self._waiting = [one for one in self._waiting if goes_on(one.root, tool)]
+        return True
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
         """Choose the tools for whole faces."""
@@ -412,7 +420,13 @@ class RackPlanner:
         for first, numbers in self._reckoned.find_slow_faces(self._done, inputs, self._allowed).items():
             other = RackPlanner([self.jobs[k] for k in sorted(self._allowed) if k >= first])
             again = [face for face in faces if face.number in numbers]
-            if not other._with_all_tools(again, progress):
+
+            def _goes_on(face: Face, tool: int, other: RackPlanner = other) -> bool:
+                """Whether what other tools made of a face so far promises to take less time."""
+                own, rows = ([op for op in some if op.face.number == face.number] for some in (self._done, other._done))
+                return may_take_less_time(rows, own, [job.tool for job in other.jobs[tool + 1:]], inputs)
+
+            if not other._with_all_tools(again, progress, _goes_on):
                 raise Cancelled("cancelled by the user")
             self._faults += other._faults
             for face in again:
