@@ -13,7 +13,9 @@ from toolaxis.shape.part import Part
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PARTS = Path(__file__).parents[3] / "shared" / "parts"
 WRONG = ("iea15blade.stp", "linkrods.step")
-QUICK = (*WRONG, "axom_boxed_sphere.step", "nacelle.stp", "kj66_impeller.step")
+QUICK = (*WRONG, "axom_boxed_sphere.step")
+#: Examples that the kernel takes seconds to read; their families are tried by others.
+SLOW = ("blisk", "impeller")
 
 
 def sheet(length, width, poles=(4, 4), kind="bspline", height=0.0):
@@ -72,7 +74,9 @@ def test_plan_says_it(tmp_path):
     assert any("check the unit" in warning for warning in made.part.warnings)
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.step")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [
+    pytest.param(path, id=path.stem, marks=pytest.mark.long if path.stem in SLOW else ())
+    for path in sorted(EXAMPLES.glob("*.step"))])
 def test_examples_are_not_warned_about(path):
     pytest.importorskip("OCP")
     from toolaxis.cad.shapes import part_from_shapes

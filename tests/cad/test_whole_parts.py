@@ -23,7 +23,7 @@ MADE = {"07_waves": "waves", "08_outline": "outline", "09_boss": "boss", "10_bos
         "11_blisk": "blisk", "12_impeller": "impeller", "13_skin": "skin", "14_blade": "blade"}
 PATCHES = ("waves", "outline", "boss", "bosses")
 ROTORS = ("blisk", "impeller")
-SLOW = ("07_waves", "11_blisk")
+SLOW = ("07_waves", "08_outline", "11_blisk", "12_impeller")
 
 
 @pytest.fixture(scope="module")

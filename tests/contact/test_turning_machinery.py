@@ -63,7 +63,7 @@ def test_a_head_that_tilts_down_to_the_table() -> None:
             assert meeting.distance == pytest.approx(5.0, abs=0.3)
 
 
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.long) for k in (3, 4))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 3, 4))])
 def test_what_is_free_at_every_position_is_free_on_the_way_and_nothing_else(seed: int) -> None:
     rng = np.random.default_rng(seed)
     bodies = (MachineBody("table", "C", "box", np.array([[-150.0, -90, -40], [150, 90, 0]])),

@@ -108,7 +108,7 @@ def test_any_number_of_processes_takes_a_skin_apart_alike(apart: Plan) -> None:
 
 
 @pytest.mark.parametrize(("rough", "cuts"), [
-    ((24, 36), (0, 24, 36)), ((4, 12), (0, 8, 12, 36)), ((0, 36), (0, 18, 36)),
+    ((24, 36), (0, 24, 36)), pytest.param((4, 12), (0, 8, 12, 36), marks=pytest.mark.long), ((0, 36), (0, 18, 36)),
     pytest.param((16, 24), (0, 20, 36), marks=pytest.mark.long)])
 def test_a_skin_machines_no_less_than_its_faces(rough: tuple[float, float], cuts: tuple[float, ...]) -> None:
     part = ta.Part.from_faces(strip(rough, cuts))

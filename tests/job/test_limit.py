@@ -68,7 +68,7 @@ def test_more_work_finds_nothing_worse(plans: dict[float, Plan]) -> None:
     assert lengths[-1] <= 1.02 * min(lengths)
 
 
-@pytest.mark.parametrize("limit", [500.0, 4000.0])
+@pytest.mark.parametrize("limit", [pytest.param(500.0, marks=pytest.mark.long), 4000.0])
 def test_the_limit_ends_at_the_same_place_on_every_run_and_for_any_number_of_workers(limit: float) -> None:
     part = ta.Part.from_faces([sheet(), sheet(40.0)])
     one, *others = (ta.plan(part, TOOL, 0.1, limit=limit, workers=workers) for workers in (1, 2, 1))

@@ -32,7 +32,7 @@ H = 0.05
 NEAR = "cone:0.2,0.2,1,12"
 
 
-@pytest.mark.parametrize("tolerance", [0.002, 0.01])
+@pytest.mark.parametrize("tolerance", [0.002, pytest.param(0.01, marks=pytest.mark.long)])
 def test_result_is_made_proven_and_filled(make, tolerance):
     face = make.seeded(71)
     found = best_axis(face, HELD, H, limits=NEAR, tolerance=tolerance)

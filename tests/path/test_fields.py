@@ -154,8 +154,9 @@ def test_in_a_field_that_is_a_parameter_half_widths_are_those_along_it(feed: str
     assert chart.run_outs(cut, along, step) == pytest.approx(reach, rel=0.05)
 
 
-@pytest.mark.parametrize(("seed", "tool", "cut_out"), [(0, BALL, False), (1, TORUS, False), (2, TORUS, True),
-                                                       (3, BALL, True)])
+@pytest.mark.parametrize(("seed", "tool", "cut_out"), [
+    pytest.param(0, BALL, False, marks=pytest.mark.long), (1, TORUS, False),
+    pytest.param(2, TORUS, True, marks=pytest.mark.long), (3, BALL, True)])
 def test_passes_in_a_field_leave_nothing_and_come_to_what_the_field_says(seed: int, tool: ta.Tool,
                                                                          cut_out: bool) -> None:
     face = holed(wavy(seed)) if cut_out else wavy(seed)

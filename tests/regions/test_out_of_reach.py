@@ -23,14 +23,14 @@ BALL = ta.Tool.ball(4, stickout=20, holder=HOLDER)
 BULL = ta.Tool.torus(diameter=5, corner_radius=0.5, stickout=20, holder=HOLDER)
 
 
-def contradictions(scene: ReachScene, face: Face, tools: list[ta.Tool], found: OutOfReach) -> int:
-    """Postures at random places of what is proven that the exact check passes: 30 places, 200 axes, each tool."""
+def contradictions(scene: ReachScene, face: Face, tools: list[ta.Tool], found: OutOfReach, count: int = 100) -> int:
+    """Postures at random places of what is proven that the exact check passes: 30 places, so many axes, each tool."""
     rng, limits = np.random.default_rng(11), scene.limits
     rows = found.rectangles[rng.integers(len(found.rectangles), size=60)]
     uv = rows[:, [0, 2]] + rng.random((60, 2)) * (rows[:, [1, 3]] - rows[:, [0, 2]])
     uv = uv[face.contains(uv)][:30]
     assert len(uv) >= 8
-    axes = unit(rng.normal(size=(200, 3)))
+    axes = unit(rng.normal(size=(count, 3)))
     axes = axes if limits is None else axes[limits.allowed(axes)]
     groups = group_surroundings(face, scene.tolerance, part=scene.part)
     return sum(int(Feasibility(face, tool, groups, scene.tolerance).reach(uv, axis, itself=True).sum())
@@ -60,6 +60,12 @@ def slot() -> ReachScene:
     return scene_of(cq.Workplane().box(60, 40, 50).faces(">Z").workplane().rect(60, 6).cutBlind(-45))
 
 
+@pytest.fixture(scope="module")
+def long_proof(slot: ReachScene) -> OutOfReach:
+    """What is proven of a side of the slot in a few seconds."""
+    return prove_out_of_reach(wall_of(slot), [BALL], slot, 300_000)
+
+
 def test_cones_cover_all_axes() -> None:
     axes = unit(np.random.default_rng(2).normal(size=(5000, 3)))
     whole = first_cones()
@@ -70,7 +76,8 @@ def test_cones_cover_all_axes() -> None:
 
 def test_corners_are_out_of_reach_of_a_ball_that_is_too_large(pocket: ReachScene) -> None:
     corners = [face for face in pocket.part.faces if face.kind == "cylinder"]
-    for face in corners:
+    assert len(corners) == 4
+    for face in corners[:2]:  # the others are mirrored
         found = prove_out_of_reach(face, [BALL], pocket)
         assert found.area == pytest.approx(face.area) and found.by_corner == found.area
         assert contradictions(pocket, face, [BALL], found) == 0
@@ -85,9 +92,8 @@ def test_what_lies_open_is_not_claimed(pocket: ReachScene, slot: ReachScene) -> 
         assert found.area == 0.0 and found.reached == pytest.approx(top.area)
 
 
-def test_the_middle_of_a_deep_slot_is_out_of_reach_for_the_holder(slot: ReachScene) -> None:
-    side = wall_of(slot)
-    found = prove_out_of_reach(side, [BALL], slot, 300_000)
+def test_the_middle_of_a_deep_slot_is_out_of_reach_for_the_holder(slot: ReachScene, long_proof: OutOfReach) -> None:
+    side, found = wall_of(slot), long_proof
     # 20 mm from both ends and from the top, and a strip along the floor, but for what the holder's clearance takes
     assert 400 < found.area < 22 * 27 + 60 * 2 and found.by_corner < 0.5 * found.area
     assert found.area + found.reached <= side.area * (1 + 1e-9)
@@ -98,11 +104,11 @@ def test_what_lies_beside_a_sharp_edge_is_out_of_reach_as_far_as_the_corner_is_r
     """A ball of radius 2 on the wall comes nearer to the floor than the 0.1 mm that it keeps up to 2.1 mm above it."""
     side = wall_of(slot)
     long = ta.Tool.ball(4, stickout=60, holder=HOLDER), ta.Tool.torus(6, 2.5, stickout=60, holder=HOLDER)
-    found = prove_out_of_reach(side, long, slot, 200_000)  # more pairs decide no more
+    found = prove_out_of_reach(side, long, slot, 60_000)  # more pairs decide no more
     assert 0.96 * 2.1 * 60 < found.by_corner <= 2.1 * 60
     assert found.area == found.by_corner and found.area + found.reached <= side.area * (1 + 1e-9)
     flat = ta.Tool.flat(4, stickout=60, holder=HOLDER)
-    assert prove_out_of_reach(side, (*long, flat), slot, 200_000).by_corner == 0.0, "its corner is sharp"
+    assert prove_out_of_reach(side, (*long, flat), slot, 60_000).by_corner == 0.0, "its corner is sharp"
 
 
 def test_of_a_sliver_that_no_cell_has_a_place_of_nothing_is_claimed(pocket: ReachScene) -> None:
@@ -125,9 +131,9 @@ def test_limits_of_the_axes_count(pocket: ReachScene) -> None:
     assert prove_out_of_reach(floor, [BALL], pocket).area < 0.5 * floor.area
 
 
-def test_a_longer_proof_finds_no_less_and_a_short_one_claims_little(slot: ReachScene) -> None:
+def test_a_longer_proof_finds_no_less_and_a_short_one_claims_little(slot: ReachScene, long_proof: OutOfReach) -> None:
     side = wall_of(slot)
-    areas = [prove_out_of_reach(side, [BALL], slot, most).area for most in (1000, 100_000, 300_000)]
+    areas = [*(prove_out_of_reach(side, [BALL], slot, most).area for most in (1000, 100_000)), long_proof.area]
     assert areas == sorted(areas) and areas[0] < 0.6 * areas[-1]
 
 
@@ -148,11 +154,12 @@ def block_with_pits(seed: int) -> Part:
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 40))])
 def test_nothing_fits_where_that_is_proven(seed: int, request: pytest.FixtureRequest) -> None:
     part, tools = block_with_pits(seed), [BALL, BULL, ta.Tool.ball(2, stickout=12, holder=HOLDER)]
-    scene, claims, most = ReachScene.of(part), 0, 100_000 if request.config.getoption("--long") else 30_000
+    scene, claims = ReachScene.of(part), 0
+    most, axes = (100_000, 200) if request.config.getoption("--long") else (10_000, 60)
     for face in part.faces:
         found = prove_out_of_reach(face, tools, scene, most)
         assert found.area + found.reached <= face.area * (1 + 1e-9)
         if found.area > 0.02 * face.area:
             claims += 1
-            assert contradictions(scene, face, tools, found) == 0, face.number
+            assert contradictions(scene, face, tools, found, axes) == 0, face.number
     assert claims, "some of the pits are too narrow"

@@ -78,7 +78,7 @@ def test_an_example_is_screened_as_the_bounds_say(scenes, name: str, faces: int)
     check(compare(part, scenes.rack(), some_of(part, faces)), 150)
 
 
-@pytest.mark.parametrize(("name", "member"), [("skin", 1), ("mousecover", 33)])
+@pytest.mark.parametrize(("name", "member"), [("skin", 1), pytest.param("mousecover", 33, marks=pytest.mark.long)])
 def test_a_skin_is_screened_as_the_bounds_say(scenes, request: pytest.FixtureRequest, name: str, member: int) -> None:
     """Of six patches whose parameters go together, and of faces that are seen in a plane."""
     pytest.importorskip("OCP")
@@ -288,7 +288,7 @@ def test_only_what_is_asked_for_is_answered_and_as_without_asking(scenes, monkey
     assert half < 0.6 * sum(looked)
 
 
-@pytest.mark.parametrize("size", [1.0, 2.5])
+@pytest.mark.parametrize("size", [pytest.param(1.0, marks=pytest.mark.long), 2.5])
 def test_the_promising_axes_of_a_tool_are_screened_whole_and_others_for_what_these_miss(scenes, size: float) -> None:
     part = scenes.pocket()
     cells, tools, scene = FaceCells.of(part.faces[0], size), scenes.rack(), ReachScene.of(part)

@@ -56,7 +56,7 @@ def test_a_sliver_off_the_edge_is_as_deep_as_it_is_below_the_surface(depth, touc
 
 
 @pytest.mark.parametrize("touching", [(SIDE,), ()], ids=["edge", "open border"])
-@pytest.mark.parametrize("width", [0.006, 0.03, 1.0])
+@pytest.mark.parametrize("width", [0.006, pytest.param(0.03, marks=pytest.mark.long), 1.0])
 def test_a_planted_gouge_at_the_border_is_found_whole(touching, width):
     """The flat bottom runs 0.005 mm too deep along the border, on a strip of any width from there."""
     at = 8.0 - width + FLAT.flat_radius
@@ -66,7 +66,8 @@ def test_a_planted_gouge_at_the_border_is_found_whole(touching, width):
     assert max(place.value for place in found.worst_gouge if place.face == "top") == pytest.approx(0.005, rel=0.06)
 
 
-@pytest.mark.parametrize("slope", [-60.0, -20.0, 20.0, 60.0])
+@pytest.mark.parametrize("slope", [
+    -60.0, *(pytest.param(slope, marks=pytest.mark.long) for slope in (-20.0, 20.0)), 60.0])
 def test_edges_of_any_angle(slope):
     """The face behind the edge leans out or in: the strip is measured to the nearer of the two faces."""
     down = 30.0 * np.array([np.sin(np.radians(slope)), 0.0, -np.cos(np.radians(slope))])

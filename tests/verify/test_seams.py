@@ -97,7 +97,7 @@ def test_a_high_step_is_an_edge():
     assert found.gouge_max == pytest.approx(0.03, abs=1e-3)
 
 
-@pytest.mark.parametrize("tolerance", [0.002, 0.01])
+@pytest.mark.parametrize("tolerance", [0.002, pytest.param(0.01, marks=pytest.mark.long)])
 def test_a_face_behind_an_edge_that_stands_out(tolerance):
     """As the side of mousecover stands 0.0034 mm out over its top; deeper by a thousandth is found."""
     height = tolerance + 0.0034
