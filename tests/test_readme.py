@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from toolaxis.cli.main import main
+
 ROOT = Path(__file__).parent.parent
 MANUAL = ROOT / "resources" / "manual"
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -40,15 +42,14 @@ def commands() -> list[str]:
     return [line for block in blocks("") for line in block.splitlines() if line.startswith("toolaxis ")]
 
 
-def test_every_command_runs(tmp_path: Path) -> None:
+def test_every_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
     assert commands()[0] == "toolaxis demo"  # tests/test_wheel.py runs it, from the wheel
     found = commands()[1:]
     assert [line.split()[1] for line in found] == ["inspect", "plan", "verify", "post", "report"]
     for line in found:
         words = [str(ROOT / word) if word.startswith("examples/") else word for word in line.split()[1:]]
-        done = subprocess.run([sys.executable, "-m", "toolaxis.cli.main", *words], cwd=tmp_path, capture_output=True,
-                              text=True)
-        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+        assert main(words) == 0, f"{line}\n{capsys.readouterr()}"
     assert (tmp_path / "out" / "saddle" / "verdict.json").exists()
     assert (tmp_path / "out" / "saddle" / "program-fanuc.nc").exists()
     assert (tmp_path / "out" / "saddle" / "report.html").exists()

@@ -26,6 +26,8 @@ from toolaxis.tools.tool import Tool
 
 TOOL, H = Tool.torus(diameter=12, corner_radius=1), 0.1
 UP = np.array([0.0, 0.0, 1.0])
+#: Fewer axes to look at.
+NEAR = "cone:0,0,1,25"
 
 
 def _chart(face: Face, axis: np.ndarray, feed: str) -> PlaneChart:
@@ -62,7 +64,7 @@ def test_the_count_is_that_of_the_passes(passes: str) -> None:
 
 
 def test_the_best_axis_is_proven_with_its_planes() -> None:
-    found = best_axis(_fan(), TOOL, H, passes=PLANES)
+    found = best_axis(_fan(), TOOL, H, passes=PLANES, limits=NEAR)
     assert found.outcome == "feasible" and found.passes >= 3 and found.gouge <= 0.01
     assert found.count == pytest.approx(task(_fan(), TOOL, H, passes=PLANES).worth.counted(found.axis, found.feed)[0])
 
@@ -86,7 +88,7 @@ def test_further_passes_beside_a_wall_lie_in_planes_too(make) -> None:
 
 def test_a_plan_along_planes_passes_the_judge_and_keeps_its_choice() -> None:
     fan = _fan()
-    made = ta.plan(ta.Part.from_faces([fan]), TOOL, H, passes=PLANES)
+    made = ta.plan(ta.Part.from_faces([fan]), TOOL, H, passes=PLANES, limits=NEAR)
     assert made.outcome == "complete" and made.inputs.passes == PLANES
     assert ta.verify(made).passed
     assert describe_feed(Orientation(UP, "u", pattern=PLANES)) == "u, in planes"
@@ -155,7 +157,7 @@ def test_plans_of_before_have_iso_parametric_passes(tmp_path: Path) -> None:
     """plan.json of an older version does not name the choice."""
     from toolaxis.job.files.plan_folder import read_plan, write_plan
 
-    write_plan(ta.plan(_fan(), TOOL, H, limits="cone:0,0,1,40"), tmp_path)
+    write_plan(ta.plan(_fan(), TOOL, H, limits=NEAR), tmp_path)
     file = tmp_path / "plan.json"
     document = json.loads(file.read_text())
     assert document["inputs"].pop("passes") == ISO

@@ -13,6 +13,7 @@ from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.vectors import angle_between
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
+from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
 from toolaxis.regions import divide_by_reach as divide
 from toolaxis.regions.cells import FaceCells, screening_axes
@@ -114,9 +115,14 @@ def test_what_the_proof_refuses_becomes_smaller_and_the_rest_larger(scenes) -> N
     assert shrink_refused(targets, [], whole, found) == targets
 
 
-def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(scenes) -> None:
-    part = mushroom(scenes.plate, 1.5)
-    made = ta.plan(part, "ball:3", 0.1, faces=[1], workers=1)
+@pytest.fixture(scope="module")
+def narrow_strip(scenes) -> Plan:
+    """The plan of a strip under a lid with a small ball."""
+    return ta.plan(mushroom(scenes.plate, 1.5), "ball:3", 0.1, faces=[1], workers=1)
+
+
+def test_a_strip_is_machined_from_several_sides_and_what_none_reaches_is_told(narrow_strip: Plan) -> None:
+    made, part = narrow_strip, narrow_strip.part
     done, rest = [op for op in made.operations if op.done], [op for op in made.operations if not op.done]
     assert made.outcome == "incomplete" and 2 <= len(done) <= 4 and len(rest) == 1
     assert sum(op.face.area for op in made.operations) == pytest.approx(part.face(1).area, rel=1e-4)
@@ -143,10 +149,11 @@ def test_stopped_among_the_pieces_it_keeps_those_that_are_finished(scenes) -> No
     assert [op.done for op in made.operations if op.face.number == 1][:2] == [True, True]
 
 
-def test_a_strip_has_what_its_passes_machine_beside_it_unless_a_step_over_is_asked_for(scenes) -> None:
-    part, left = mushroom(scenes.plate, 1.5), {}
-    for most in (0.0, 5.0):
-        made = ta.plan(part, "ball:3", 0.1, faces=[1], workers=1, greatest_step_over=most)
+def test_a_strip_has_what_its_passes_machine_beside_it_unless_a_step_over_is_asked_for(narrow_strip: Plan) -> None:
+    part, left = narrow_strip.part, {}
+    assert narrow_strip.inputs.greatest_step_over == 0.0
+    asked = ta.plan(part, "ball:3", 0.1, faces=[1], workers=1, greatest_step_over=5.0)
+    for most, made in ((0.0, narrow_strip), (5.0, asked)):
         (rest,) = [op for op in made.operations if not op.done]
         left[most], told = rest.face.area, [why for why in rest.orientation.reasons if "passes beside it" in why]
         assert sum(op.face.area for op in made.operations) == pytest.approx(part.face(1).area, rel=1e-5)
