@@ -42,7 +42,8 @@ def commands() -> list[str]:
     return [line for block in blocks("") for line in block.splitlines() if line.startswith("toolaxis ")]
 
 
-def test_every_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                            capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     assert commands()[0] == "toolaxis demo"  # tests/test_wheel.py runs it, from the wheel
     found = commands()[1:]

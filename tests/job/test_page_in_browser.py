@@ -45,28 +45,38 @@ def page(small_plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return report(folder)
 
 
-@pytest.fixture
-def opened(page: Path, tmp_path: Path) -> Iterator[Open]:
-    """A function that opens the page: width and height in pixels, a phone or not, further flags."""
-    drivers: list[Any] = []
+@pytest.fixture(scope="module")
+def opened(page: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Open]:
+    """A function that opens the page: width and height in pixels, a phone or not, further flags.
+
+    A browser that was asked for alike is kept, and opens the page anew.
+    """
+    drivers: dict[tuple[Any, ...], Any] = {}
 
     def _open(width: int = 1280, height: int = 900, *, phone: bool = False, flags: tuple[str, ...] = _TURNING) -> Any:
+        asked = width, height, phone, flags
+        if asked in drivers:
+            for log in ("browser", "performance"):
+                drivers[asked].get_log(log)
+            drivers[asked].get(page.as_uri())
+            return drivers[asked]
         options = webdriver.ChromeOptions()
         options.binary_location = CHROMIUM
-        for flag in (*_FLAGS, *flags, f"--window-size={width},{height}", f"--user-data-dir={tmp_path / 'profile'}"):
+        profile = tmp_path_factory.mktemp("profile")
+        for flag in (*_FLAGS, *flags, f"--window-size={width},{height}", f"--user-data-dir={profile}"):
             options.add_argument(flag)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
-        drivers.append(driver)
         driver.set_page_load_timeout(120)
         driver.set_script_timeout(120)
         driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "mobile": phone,
                                                                       "deviceScaleFactor": 1})
         driver.get(page.as_uri())
+        drivers[asked] = driver
         return driver
 
     yield _open
-    for driver in drivers:
+    for driver in drivers.values():
         driver.quit()
 
 

@@ -402,7 +402,7 @@ def test_no_more_tools_are_used_than_are_allowed() -> None:
 
 
 def test_a_tool_too_small_for_the_scallop_is_left_out_and_told() -> None:
-    made = ta.plan(trough(), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
+    made = ta.plan(trough(40.0), ["ball:10", "ball:0.18"], SCALLOP, limits=UP, workers=1)
     assert [tool.name for tool in made.tools] == ["ball:10"]
     assert any("left out: its radius is not above the scallop height" in why for why in made.part.warnings)
 
@@ -432,11 +432,10 @@ def test_the_largest_of_what_waits_for_a_tool_comes_first(monkeypatch: pytest.Mo
     assert all(row == sorted(row, reverse=True) for row in seen)
 
 
-def test_what_is_in_reach_of_some_tool_is_told_of_a_face() -> None:
+def test_what_is_in_reach_of_some_tool_is_told_of_a_face(planned: Plan) -> None:
     """Beside a wall the small ball comes nearer to it than the large one; from below none sees the sheet."""
     part = walled()
-    plan = ta.plan(part, TOOLS[1], SCALLOP, faces=[1], limits=UP, workers=1)
-    job = PlanningJob(part, TOOLS[1], plan.inputs, None, (), np.zeros(3))
+    job = PlanningJob(part, TOOLS[1], planned.inputs, None, (), np.zeros(3))
     face = part.face(1)
     large, both = (RackScreening([replace(job, tool=tool) for tool in some], [face]).reachable(face)
                    for some in (TOOLS[:1], TOOLS))
@@ -445,11 +444,11 @@ def test_what_is_in_reach_of_some_tool_is_told_of_a_face() -> None:
     assert RackScreening([below], [face]).reachable(face) == 0.0
 
 
-def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(
+        planned: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
     """Found: a face that tool after tool could not machine was screened anew with all smaller tools each time."""
     part, tools = walled(), [*TOOLS, ta.Tool.ball(1)]
-    plan = ta.plan(part, TOOLS[1], SCALLOP, faces=[1], limits=UP, workers=1)
-    jobs = [PlanningJob(part, tool, plan.inputs, None, (), np.zeros(3)) for tool in tools]
+    jobs = [PlanningJob(part, tool, planned.inputs, None, (), np.zeros(3)) for tool in tools]
     face = part.face(1)
     half = face.trimmed((np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]]),))
     anew = [RackScreening(jobs, [face]).look_at(one, begin).chains for one in (face, half) for begin in (1, 2)]

@@ -140,7 +140,7 @@ def test_groups_sort_faces_by_their_edges(make):
     np.testing.assert_allclose(groups[2].required, [0.1, 0.5, 1.0])
 
 
-@pytest.mark.parametrize("name", ["blisk", "bosses"])
+@pytest.mark.parametrize("name", [pytest.param("blisk", marks=pytest.mark.long), "bosses"])
 def test_faces_that_meet_the_skin_may_be_touched_but_not_walls(name):
     pytest.importorskip("OCP")
     part = ta.load(EXAMPLES / f"{name}.step")

@@ -64,13 +64,14 @@ OLDER = {"test_bad_cases.py": ("test_what_has_no_sculptured_face", "test_edges_s
 # panels one FreeCAD has opened and closed, the sooner Qt ends in a widget that is gone.
 TOGETHER = (("test_cam_jobs.py", "test_install.py", "test_objects_tree.py", "test_saved_before.py",
              "test_work_setup.py"),
-            ("test_arguments.py", "test_children.py", "test_choices.py", "test_document_parts.py", "test_export.py",
-             "test_loose_faces.py", "test_machines.py", "test_objects_change.py", "test_path_collisions.py",
-             "test_playing.py", "test_renumbering.py", "test_tessellation_offset.py", "test_time_left.py",
-             "test_translations.py"),
+            ("test_arguments.py", "test_children.py", "test_choices.py", "test_defaults.py", "test_document_parts.py",
+             "test_export.py", "test_loose_faces.py", "test_machines.py", "test_objects_change.py",
+             "test_path_collisions.py", "test_playing.py", "test_renumbering.py", "test_tessellation_offset.py",
+             "test_time_left.py", "test_translations.py"),
             ("test_background.py", "test_fields.py", "test_play.py", "test_settings.py", "test_setup_tab.py",
              "test_views.py"),
-            ("test_many_jobs.py", "test_moving.py", "test_small_window.py", "test_verify_panel.py"))
+            ("test_many_jobs.py", "test_moving.py", "test_small_window.py", "test_verify_panel.py"),
+            ("test_any_order.py", "test_interruptions.py"))
 # each in another Python, where it compiles what the others then find compiled
 FIRST = ("cli/test_commands.py", "workbench/test_whole_plans.py", "workbench/gui/test_panel.py")
 # What runs outside FreeCAD for longest, the longest first: on one process alone it would keep all waiting at the end.
