@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+#: Of one family of parts that were made for tests of readers; two others of it are read in a third of the time.
+SLOW = ("ctc02", "tm_featuretype")
 collect_ignore = [] if find_spec("OCP") else ["test_surfaces.py", "test_kernel_agreement.py"]
 
 
@@ -25,7 +27,8 @@ def pytest_generate_tests(metafunc):
         parts = shared_files()
         reason = "no shared parts: set TOOLAXIS_SHARED to the folder that has parts/*.step"
         missing = [pytest.param(None, marks=pytest.mark.skip(reason=reason), id="absent")]
-        metafunc.parametrize("shared_part", [pytest.param(p, id=p.stem) for p in parts] or missing, scope="module")
+        files = [pytest.param(p, id=p.stem, marks=pytest.mark.long if p.stem in SLOW else ()) for p in parts]
+        metafunc.parametrize("shared_part", files or missing, scope="module")
 
 
 @pytest.fixture(scope="session")

@@ -106,7 +106,7 @@ def test_the_numbers_do_not_depend_on_where_the_part_stands():
     rigid[:3, :3] = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
     rigid[:3, :3] *= np.linalg.det(rigid[:3, :3])
     rigid[:3, 3] = 3.0, -7.0, 11.0
-    tips, axis = chamfer(0.012)
+    tips, axis = chamfer(0.007)
     moved = cut_along_the_edge(np.array(tips) @ rigid[:3, :3].T + rigid[:3, 3], rigid[:3, :3] @ axis,
                                touching=(SIDE.transformed(rigid),), target=TOP.transformed(rigid))
     assert moved.gouge_max == pytest.approx(cut_along_the_edge(tips, axis).gouge_max, rel=1e-3)
