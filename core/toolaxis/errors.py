@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from toolaxis.advice import LARGER_SCALLOP
+
 #: Where faults of the program are reported; package.xml names the same address.
 REPORT_AT = "https://toolaxis.example/issues"
 #: How the sentence of a fault begins that is a lack of memory.
@@ -97,8 +99,8 @@ def fault(reason: BaseException) -> Fault:
         return Fault(f"failed: {words}", written)
     where = place_of(reason)
     if isinstance(reason, MemoryError):
-        return Fault(f"{OUT_OF_MEMORY}, at {where}: plan fewer faces at a time, with one worker or a larger scallop "
-                     f"height; where that does not help, {report_it()}", written)
+        return Fault(f"{OUT_OF_MEMORY}, at {where}: plan fewer faces at a time, with one worker or "
+                     f"{LARGER_SCALLOP}; where that does not help, {report_it()}", written)
     what = f"{type(reason).__name__}: {words}" if words else type(reason).__name__
     return Fault(f"failed: {what}, at {where}: {report_it()}", written)
 

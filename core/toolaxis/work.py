@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+from toolaxis.advice import COARSER_SCALLOP
 from toolaxis.errors import ToolAxisError
 
 #: Bounds that make up one of the units in which limits are given, and how many units are allowed unless said otherwise:
@@ -84,7 +85,7 @@ class Budget:
         limit = f"{_LIMIT_WORDS} {self.limit:,.10g}"
         if found:
             return f"search stopped at {limit}: a better axis may exist (raise --limit)"
-        return f"no axis found within {limit}: raise --limit, use a coarser scallop or another tool"
+        return f"no axis found within {limit}: raise --limit, use {COARSER_SCALLOP} or another tool"
 
     @contextmanager
     def _up_to(self, share: float) -> Iterator[None]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from toolaxis import advice
 from toolaxis.messages.translate import catalogue
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,7 +34,7 @@ ENGLISH_THROUGHOUT = {
     "post/tcp_program.py": "a note of the setup sheet",
     "post/dialects/": "comments in programs are English",
     "tools/cutters/": "names of kinds of cutters, which the window takes from resources/translations",
-    "plan/remedies.py": "words that it looks for in sentences, which have entries of their own",
+    "advice.py": "words that sentences are made of, which have entries of their own",
     "job/planning/failures.py": "error.txt, which is sent in with a report",
 }
 #: Texts that look like sentences and have no entry of their own, and why.
@@ -80,13 +81,19 @@ def pieces(node):
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         return node.value
     if isinstance(node, ast.JoinedStr):
-        return "".join(part.value if isinstance(part, ast.Constant) else "\f" for part in node.values)
+        return "".join(part.value if isinstance(part, ast.Constant) else advised(part) for part in node.values)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
         left, right = pieces(node.left), pieces(node.right)
         if left is None and right is None:
             return None
         return ("\f" if left is None else left) + ("\f" if right is None else right)
     return None
+
+
+def advised(value):
+    """What a value in a text stands for where it is one of the words of `toolaxis.advice`, else a form feed."""
+    name = value.value.id if isinstance(value.value, ast.Name) else ""
+    return getattr(advice, name) if name.isupper() and hasattr(advice, name) else "\f"
 
 
 def texts(tree):

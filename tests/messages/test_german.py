@@ -28,12 +28,13 @@ from toolaxis.messages.translate import matching, translate
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.plan import PlanInputs
+from toolaxis.plan.tally import COUNTED
 from toolaxis.plan.zone import Zone
 from toolaxis.post.read_apt import read_apt
 from toolaxis.post.read_nc import read_nc
 from toolaxis.progress import Progress
 from toolaxis.search.fixed_axis import evaluate_axis
-from toolaxis.search.messages import COUNTED, left_reasons, nothing_to_cut, sentence
+from toolaxis.search.messages import left_reasons, nothing_to_cut, sentence
 from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.shape.seams import seam_warnings
 from toolaxis.strategies.inputs import check_strategy

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import LONGER_STICKOUT, SMALLER_TOOL
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import Obstacles
 from toolaxis.machine.limits import AxisLimits
@@ -139,8 +140,8 @@ def _why_not(divider: Divider, number: int) -> str:
     known = divider.best.known
     if len(known) and number > known[-1]:
         return f"at most {known[-1]} are wider than the cutter"
-    return "some places allow no axis that goes with their neighbours' one; ask for more, or take a smaller tool, a " \
-           "longer stick-out or fewer obstacles"
+    return "some places allow no axis that goes with their neighbours' one; ask for more, or take " \
+           f"{SMALLER_TOOL}, {LONGER_STICKOUT} or fewer obstacles"
 
 
 def check_count(count: int | str | None, what: str = "sub-surfaces") -> int | None:

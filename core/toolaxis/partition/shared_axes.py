@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
+from toolaxis.advice import DIVIDE, SMALLER_TOOL
 from toolaxis.errors import InvalidInput
 from toolaxis.partition.cost_grid import CostGrid
 from toolaxis.partition.face_division import MOST, Divider, Regions, Solution
@@ -66,7 +67,7 @@ def cover(costs: ArrayLike, most: int | None = None, index_cost: float = 0.0) ->
     sub, axis = np.nonzero(np.isfinite(table))
     s, k = table.shape
     if len(np.unique(sub)) < s:
-        raise InvalidInput("a sub-surface has no axis that may be used: divide the face further, or take another tool")
+        raise InvalidInput(f"a sub-surface has no axis that may be used: {DIVIDE} further, or take another tool")
     n = len(sub)
     pick = np.arange(n)
     one = coo_array((np.ones(n), (sub, pick)), shape=(s, n + k))
@@ -185,7 +186,7 @@ def divide_with_shared_axes(dividers: Sequence[Divider], most: int, index_cost: 
                                                              each))
     if best is None:
         raise InvalidInput(f"no division was found that {most} {'axis' if most == 1 else 'axes'} can machine: allow "
-                           "more orientations, or take a smaller tool")
+                           f"more orientations, or take {SMALLER_TOOL}")
     return _describe_division(dividers, best)
 
 
@@ -228,7 +229,7 @@ def trade(dividers: Sequence[Divider], most: int = MOST, progress: Progress = NO
             break
         options.append(_describe_division(dividers, best))
     if not options:
-        raise InvalidInput(f"no division was found that {most} axes can machine: take a smaller tool")
+        raise InvalidInput(f"no division was found that {most} axes can machine: take {SMALLER_TOOL}")
     return TradeOff(tuple(options), knee([one.orientations for one in options], [one.cost for one in options]))
 
 

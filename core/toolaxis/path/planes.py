@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
+from toolaxis.advice import DIVIDE
 from toolaxis.cldata.toolpath import ToolPath
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
 from toolaxis.contact.strip.width import strip_width
@@ -37,8 +38,8 @@ _COVERED, _OTHER = 15, 1e-6
 _ALONG = 17
 #: Least cosine between axis and normal.
 _SEEN = 1e-6
-_RULE = ("parallel planes need a face that is seen along the axis everywhere: use iso-parametric passes, or divide the "
-         "face")
+_RULE = ("parallel planes need a face that is seen along the axis everywhere: use iso-parametric passes, or "
+         f"{DIVIDE}")
 
 
 @dataclass(frozen=True, eq=False)

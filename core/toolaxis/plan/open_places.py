@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import LONGER_TOOL
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
@@ -138,7 +139,7 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     if place.radius < smallest:
         return f"a ball end of {2 * place.radius:.2g} mm or less"
     if place.unreachable >= _MOSTLY * place.area:
-        return "a slimmer or longer tool, or another clamping: no tool here reaches it with any axis"
+        return f"{LONGER_TOOL}, or another clamping: no tool here reaches it with any axis"
     if place.limited:
         return "more work: raise --limit"
-    return "a slimmer or longer tool, or another clamping: no axis that was tried reaches it"
+    return f"{LONGER_TOOL}, or another clamping: no axis that was tried reaches it"

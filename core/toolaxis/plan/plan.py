@@ -7,6 +7,7 @@ from math import degrees, inf, isfinite, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import SMALLER_SCALLOP
 from toolaxis.errors import Fault, InvalidInput
 from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
@@ -190,7 +191,7 @@ class PlanInputs:
             raise InvalidInput(f"greatest step-over is {most} mm: it must be finite and above zero, or 0 for none")
         if 0 < most < self.scallop:
             raise InvalidInput(f"greatest step-over is {most} mm, below the scallop height of {self.scallop} mm: give "
-                               "a larger step-over, or a smaller scallop height")
+                               f"a larger step-over, or {SMALLER_SCALLOP}")
 
     @property
     def half_space_held(self) -> HalfSpace | None:
@@ -296,7 +297,7 @@ class PlanInputs:
             raise InvalidInput(f"tool is {tool!r}: give a Tool, its short form (torus:12x1), a file or a name")
         if self.scallop >= tool.radius:
             raise InvalidInput(f"scallop is {self.scallop} mm, not below the cutter radius {tool.radius} mm: "
-                               "give a smaller scallop height")
+                               f"give {SMALLER_SCALLOP}")
 
 
 def describe_feed(found: Orientation) -> str:

@@ -1,7 +1,7 @@
 """What may make a refused face possible: a longer stick-out, another cutter, several axes, a tolerance, no limits.
 
-Found from what forbids most axes of the maps of operations without an axis, and from the sentences that say why there
-is none: what they advise is offered.  A remedy is an offer, not a proof: only planning again tells what comes of it.
+Found from what forbids most axes of the maps of operations without an axis, and from what the sentences advise that say
+why there is none (`toolaxis.advice`).  A remedy is an offer, not a proof: only planning again tells what comes of it.
 """
 
 import re
@@ -12,9 +12,11 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis import advice
 from toolaxis.numeric.grids import grid_rows
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, outcome_of
+from toolaxis.plan.tally import counts_of
 from toolaxis.tolerances import GREATEST
 from toolaxis.tools.tool import Tool
 
@@ -29,16 +31,13 @@ _STEP, _LONGEST = 5.0, 12.0
 _WORTH, _SIDE = 0.1, 9
 #: Values that are offered for scallop height and tolerance, mm.
 _HEIGHTS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
-#: What sentences advise: words in them, and the input that it is.
-_ADVICE = (("larger machining tolerance", "tolerance"), ("smaller corner radius", "corner"),
-           ("smaller cutter", "slimmer"), ("take a smaller one", "slimmer"), ("smaller tool", "slimmer"),
-           ("slimmer tool", "slimmer"), ("longer stick-out", "longer"), ("slimmer or longer tool", "longer"),
-           ("larger scallop height", "coarser"), ("greater scallop height", "coarser"),
-           ("coarser --scallop", "coarser"), ("smaller scallop height", "finer"), ("divide the face", "divide"))
-_OUT = re.compile(r"stands ([0-9.]+) mm out")
-#: How a sentence on an operation without a map counts axes, in the order of `toolaxis.plan.orientation.REASONS`.
-_COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal", "with a gouge",
-            "with a collision of the cutter", "with a collision of the shank", "with a collision of the holder")
+#: What sentences advise, and the input that it is.
+_ADVICE = {advice.LARGER_TOLERANCE: "tolerance", advice.SMALLER_CORNER: "corner", advice.SMALLER_CUTTER: "slimmer",
+           advice.SMALLER_ONE: "slimmer", advice.SMALLER_TOOL: "slimmer", advice.SLIMMER_TOOL: "slimmer",
+           advice.LONGER_STICKOUT: "longer", advice.LONGER_TOOL: "longer", advice.LARGER_SCALLOP: "coarser",
+           advice.GREATER_SCALLOP: "coarser", advice.COARSER_SCALLOP: "coarser", advice.SMALLER_SCALLOP: "finer",
+           advice.DIVIDE: "divide"}
+_OUT = re.compile(f"([0-9.]+) {advice.STANDS_OUT}")
 
 
 @dataclass(frozen=True)
@@ -105,10 +104,8 @@ def _counts_of(op: Operation) -> Array:
     """How many axes are forbidden for each reason: by the map, else by the sentences."""
     found = op.orientation.map
     if found is not None:
-        return np.bincount(found.reason, minlength=len(_COUNTED))[:len(_COUNTED)].astype(float)
-    text = " ".join(why for why in op.orientation.reasons if "axes tested" in why)
-    rows = [re.findall(rf"([0-9]+) {words}", text) for words in _COUNTED]
-    return np.array([sum(map(float, row)) for row in rows])
+        return np.bincount(found.reason, minlength=_HOLDER + 1)[:_HOLDER + 1].astype(float)
+    return counts_of(op.orientation.reasons)
 
 
 def remedies_advised(sentences: Iterable[str], tool: Tool, heights: tuple[float, float],
@@ -139,7 +136,7 @@ def remedies_advised(sentences: Iterable[str], tool: Tool, heights: tuple[float,
                  "slimmer": _slimmer(tool, 1.0), "longer": _half_longer(tool),
                  "coarser": _larger("scallop", scallop, tool.radius / 2), "finer": _finer(scallop, tool),
                  "divide": [] if divided else [Remedy("regions", "auto", 1.0)]}
-        for words, kind in _ADVICE:
+        for words, kind in _ADVICE.items():
             if words in text:
                 for one in known[kind]:
                     found.setdefault(one.name, one)

@@ -5,6 +5,7 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import DIVIDE, SMALLER_CORNER
 from toolaxis.contact.clearance.branch_and_bound import BUDGET
 from toolaxis.contact.clearance.queries import lower_bounds, motions
 from toolaxis.feasibility.feasibility import Feasibility
@@ -42,7 +43,7 @@ def spread_too_wide(feasibility: Feasibility) -> str:
     else:
         size, limit = "over more than a hemisphere", f"{degrees(most):.1f}"
     return (f"no single axis reaches all of face {feasibility.face.label}: its normals spread {size}, as at "
-            f"{', '.join(place(p) for p in rim)}, and the cutter reaches {limit} deg from the axis; divide the face "
+            f"{', '.join(place(p) for p in rim)}, and the cutter reaches {limit} deg from the axis; {DIVIDE} "
             "into sub-surfaces with an axis each (--regions N)")
 
 
@@ -107,4 +108,4 @@ def corner_too_large(feasibility: Feasibility) -> str:
     deep, allowed = format_apart(float(depth[i]), limit, 3)
     radius, where = feasibility.tool.corner_radius, place(some.point[i])
     return (f"the corner radius {radius:g} mm gouges face {feasibility.face.label} by {deep} mm at {where} "
-            f"with every axis; {allowed} mm is allowed: use a smaller corner radius")
+            f"with every axis; {allowed} mm is allowed: use {SMALLER_CORNER}")

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import DIVIDE, LARGER_TOLERANCE, SMALLER_CUTTER, STANDS_OUT
 from toolaxis.contact.clearance.gouge import depth_from_distance
 from toolaxis.feasibility.check_points import around
 from toolaxis.feasibility.feasibility import Feasibility
@@ -16,6 +17,7 @@ from toolaxis.feasibility.violations import BACK, CUTTER, GOUGE, LIMITS, WANDERS
 from toolaxis.numeric.rounding import round_significant
 from toolaxis.numeric.vectors import angle_between, dot
 from toolaxis.plan.orientation import REASONS
+from toolaxis.plan.tally import tally_sentence
 from toolaxis.plan.zone import AVOIDED, Zone
 from toolaxis.search.evaluated_axes import AxisTable
 from toolaxis.shape.face import Face
@@ -34,13 +36,6 @@ _FOR = ("", "by the limits", "as too far from a normal", "as too near to a norma
 #: What axes have passed that get so far, by the first reason that is found out afterwards.
 _PASSED = {LIMITS: "", BACK: " inside the limits", WANDERS: " that see all of the face",
            GOUGE: " that limits and normals allow"}
-#: What an axis misses, in the order of `REASONS`: after its count.
-COUNTED = ("free", "outside the limits", "too far from a normal", "too near to a normal for the flat bottom",
-           "with a gouge", "with a collision of the cutter", "with a collision of the shank",
-           "with a collision of the holder")
-#: The same of a ball end, which has no flat bottom.
-LEANS_TOO_LITTLE = "too near to a normal for the least lean"
-
 #: How sentences end, or begin, that tell what an operation leaves.
 LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
 
@@ -251,7 +246,7 @@ def nothing_to_cut(face: Face) -> str:
     face : Face
     """
     return (f"no pass is left on face {face.label}: walls or faces beside it keep the tool off everywhere along the "
-            "passes; divide the face (--regions), or use a smaller cutter")
+            f"passes; {DIVIDE} (--regions), or use {SMALLER_CUTTER}")
 
 
 def _proud(found: Violation, behind: Face, feasibility: Feasibility) -> str:
@@ -263,9 +258,9 @@ def _proud(found: Violation, behind: Face, feasibility: Feasibility) -> str:
     out = float(dot(near - foot.point, own.normal(foot.uv)).max())
     if out <= GREATEST:
         return ""  # what faces miss each other by was taken off already
-    return (f". Face {found.label} stands {amount(out)} mm out over face {own.label} there, more than the "
-            f"{GREATEST:g} mm that are taken as inaccuracy of the file: repair the edge, or plan with a larger "
-            "machining tolerance")
+    return (f". Face {found.label} stands {amount(out)} {STANDS_OUT} {own.label} there, more than the "
+            f"{GREATEST:g} mm that are taken as inaccuracy of the file: repair the edge, or plan with "
+            f"{LARGER_TOLERANCE}")
 
 
 def tally(ledger: AxisTable) -> str:
@@ -276,11 +271,7 @@ def tally(ledger: AxisTable) -> str:
     ledger : AxisTable
     """
     counts = np.bincount(ledger.reason, minlength=len(REASONS))
-    words = list(COUNTED)
-    if ledger.feasibility.tool.flat_radius == 0:
-        words[WANDERS] = LEANS_TOO_LITTLE
-    parts = [f"{counts[k]} {words[k]}" for k in range(1, len(REASONS)) if counts[k]]
-    return f"{len(ledger.axes)} axes tested: " + (", ".join(parts) if parts else "none was refused")
+    return tally_sentence(counts, ledger.feasibility.tool.flat_radius > 0)
 
 
 class Refusal(NamedTuple):

@@ -145,6 +145,7 @@ def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
     german.type(form.scallop, "50 mm")
     assert form.message.text().startswith("Rillenhöhe ist 50"), form.message.text()
     assert "eine kleinere Rillenhöhe angeben" in form.message.text()
+    assert form.remedy1.isVisible() and form.remedy1.text().startswith("Rillenhöhe 0"), form.remedy1.text()
     german.type(form.scallop, "0.1 mm")
     form.limits.setCurrentIndex(1)
     form.limitZ.setValue(-1.0)
@@ -157,5 +158,6 @@ def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
     reasons = form.reasons.text().split("\n")
     assert reasons[0].startswith("Unmöglich") and " Achsen " in reasons[0], reasons
     assert "Achsen geprüft: " in reasons[-1] and "außerhalb der Grenzen" in reasons[-1], reasons
+    assert form.remedy1.isVisible() and form.remedy1.text() == "Ohne Grenzen", form.remedy1.text()
     german.down(form.reasons)
     german.shot("96-german-reasons")

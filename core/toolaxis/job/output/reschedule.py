@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.advice import LONGER_TOOL
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN, CheckSurfaces
@@ -136,7 +137,7 @@ def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, pr
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
     proof = prove_moving(path, tool, (CheckSurfaces(SKIN, faces, np.array([-depth, *far])),), progress=progress)
     if proof.witness is not None:
-        raise InvalidInput(f"the new tool angles are refused: {_said(proof.witness)}; take a slimmer or longer tool, "
+        raise InvalidInput(f"the new tool angles are refused: {_said(proof.witness)}; take {LONGER_TOOL}, "
                            "another --curve, or a rotary axis that leans away")
     # links between cuts: those that leave a cut or lead to one begin or end on the part and were judged above
     free = CheckSurfaces(OTHER, faces, np.array([tolerance.cutter_clearance, *far]))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import DIVIDE
 from toolaxis.contact.placement import place
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import UnsupportedGeometry
@@ -207,7 +208,7 @@ def _check_open(face: Face) -> None:
         apart = np.linalg.norm(face.evaluate(low).point - face.evaluate(high).point, axis=1)
         if (apart <= _MEET * face.diagonal).all():
             raise UnsupportedGeometry(f"face {face.label} is closed in {name}: passes in a field need a face that is "
-                                      "open both ways; use iso-parametric passes, or divide the face")
+                                      f"open both ways; use iso-parametric passes, or {DIVIDE}")
 
 
 def even_places(face: Face, count: int) -> Array:

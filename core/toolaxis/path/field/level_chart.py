@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import DIVIDE
 from toolaxis.contact.strip.second_order import contact_forms, screen_numpy
 from toolaxis.contact.strip.width import strip_width
 from toolaxis.errors import UnsupportedGeometry
@@ -55,7 +56,7 @@ class LevelChart(FreeChart):
         along, across = (np.linspace(*end, _LOOKED) for end in (ends[1 - self._across], ends[self._across]))
         if not (self._rate(self._join(np.repeat(along, _LOOKED), np.tile(across, _LOOKED))) > 0).all():
             raise UnsupportedGeometry(f"passes in a field along {self.feed} turn back on face {self.face.label}: "
-                                      "use iso-parametric passes, or divide the face")
+                                      f"use iso-parametric passes, or {DIVIDE}")
 
     @property
     def _across(self) -> int:

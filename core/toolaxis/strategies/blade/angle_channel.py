@@ -12,6 +12,7 @@ from math import degrees, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import LONGER_STICKOUT, SLIMMER_TOOL
 from toolaxis.errors import InvalidInput
 from toolaxis.strategies.blade.section import Section
 from toolaxis.tools.tool import Tool
@@ -73,7 +74,7 @@ class AngleChannel:
             k = int(np.argmin(made.high - made.low))
             raise InvalidInput(f"the channel of tool angles closes on {place} at S = {self.lengths[k]:.2f} mm: "
                                f"{degrees(-made.width):.2f} deg are missing for a rotary axis that does not turn back; "
-                               "take a slimmer tool or holder, a longer stick-out, or less clearance")
+                               f"take {SLIMMER_TOOL} or holder, {LONGER_STICKOUT}, or less clearance")
         return made
 
     def slack(self, lengths: Array, theta: Array) -> Array:

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import LARGER_SCALLOP, SMALLER_CUTTER
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import unit
 from toolaxis.shape.face import Face
@@ -164,8 +165,8 @@ class Ring:
         found = [high]
         while found[-1] > low:
             if len(found) > _MOST:
-                raise InvalidInput(f"more than {_MOST} layers would be needed on face {self.face.label}: give a larger "
-                                   "scallop height or cutter")
+                raise InvalidInput(f"more than {_MOST} layers would be needed on face {self.face.label}: give "
+                                   f"{LARGER_SCALLOP} or cutter")
             step = _EVEN * float(np.interp(-found[-1], -places, steps))
             found.append(max(found[-1] - step, low))
         return np.array(found)
@@ -191,7 +192,7 @@ class Ring:
                 bad = middle
         if good == 0.0:
             raise InvalidInput(f"no layer below height {top:.3f} mm keeps the scallop height on face "
-                               f"{self.face.label}: give a larger one, or a smaller cutter where it is hollow")
+                               f"{self.face.label}: give a larger one, or {SMALLER_CUTTER} where it is hollow")
         return good
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.advice import SLIMMER_TOOL
 from toolaxis.errors import InvalidInput
 from toolaxis.strategies.blade.angle_channel import AngleChannel
 
@@ -267,5 +268,5 @@ def _solve(cost: Array, above: Any, bound: Sequence[tuple[float | None, float | 
     found = linprog(cost, above, most, bounds=bound, method="highs-ds")
     if found.status != 0:
         raise InvalidInput(f"no rising curve of tool angles leads through the channel between the ends of a layer "
-                           f"({found.message.split('.')[0]}): take a slimmer tool, less clearance, or another base")
+                           f"({found.message.split('.')[0]}): take {SLIMMER_TOOL}, less clearance, or another base")
     return np.asarray(found.x)

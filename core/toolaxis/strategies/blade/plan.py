@@ -8,6 +8,7 @@ from math import degrees, radians
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import LONGER_TOOL
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.parts import number_parts
@@ -264,7 +265,7 @@ class BladeSearch:
         raise InvalidInput(f"the channel of tool angles closes on layer {k + 1} of {len(planes)} at S = "
                            f"{wide.lengths[i]:.1f} mm, at {np.round(at, 2).tolist()}: "
                            f"{degrees(2 * CLEARANCE - wide.width):.1f} deg are missing for a rotary axis that does "
-                           "not turn back; take a slimmer or longer tool, or a machine on which it leans away from the "
+                           f"not turn back; take {LONGER_TOOL}, or a machine on which it leans away from the "
                            "root; where a neighbouring blade bars the way no tool goes around that reaches to it: "
                            "plan the sides with strategy 'indexed'")
 

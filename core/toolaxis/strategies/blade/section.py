@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.advice import SMALLER_CUTTER
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows
 
@@ -125,7 +126,7 @@ def _check_simple(rows: Array, place: str) -> None:
     found = np.argwhere((gap > 1) & (gap < len(rows) - 1) & (across != 0) & (t > 0) & (t < 1) & (u > 0) & (u < 1))
     if len(found):
         at = rows[own[i[found[0, 0]], found[0, 1]]]
-        raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take a smaller cutter where it is "
+        raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take {SMALLER_CUTTER} where it is "
                            "hollow, or repair the section")
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.advice import SMALLER_CORNER
 from toolaxis.errors import InvalidInput
 from toolaxis.tools.tool import Tool
 
@@ -48,8 +49,8 @@ def check_bull_nose(tool: Tool, flat_too: bool = True) -> None:
     """
     if tool.flat_radius <= 0:
         raise InvalidInput(f"corner radius is {tool.corner_radius:g} mm, the radius of the cutter {tool.name}: the "
-                           "curvature of a ball end does not depend on how it leans; take a cutter with a smaller "
-                           "corner radius")
+                           "curvature of a ball end does not depend on how it leans; take a cutter with "
+                           f"{SMALLER_CORNER}")
     if not flat_too and tool.corner_radius <= 0:
         raise InvalidInput(f"corner radius of the cutter {tool.name} is 0 mm: a sharp corner leaves scallops with an "
                            "edge, for which the formulas of a torus do not stand; take one with a corner radius")

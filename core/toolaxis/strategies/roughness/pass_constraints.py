@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import SMALLER_CUTTER
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.contact.placement import tips
 from toolaxis.contact.strip.cutter_parameters import cutter_parameters
@@ -332,7 +333,7 @@ def _impossible(lane: PassConstraints, k: int) -> str:
                 f"{lane.wish.widths[0]:.3g} to {lane.wish.widths[1]:.3g} mm: lay passes closer, allow wider strips, or "
                 "take a larger cutter")
     return (f"no orientation near {where} of face {lane.face.label} is free of gouging with a strip of "
-            f"{lane.wish.widths[0]:.3g} to {lane.wish.widths[1]:.3g} mm: take a smaller cutter, or another range")
+            f"{lane.wish.widths[0]:.3g} to {lane.wish.widths[1]:.3g} mm: take {SMALLER_CUTTER}, or another range")
 
 
 def spline_along_axes(lane: PassConstraints, axes: Array) -> RotarySpline:

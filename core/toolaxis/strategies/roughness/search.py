@@ -12,6 +12,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import GREATER_SCALLOP, LONGER_STICKOUT, SMALLER_CUTTER, SMALLER_SCALLOP
 from toolaxis.contact.clearance.queries import keeps_limits, motions
 from toolaxis.contact.placement import tips
 from toolaxis.contact.strip.second_order import contact_forms
@@ -140,7 +141,7 @@ class RoughnessSearch:
                                             (least, min(MOST_LEAN, job.feasibility.greatest_angle - radians(1.0))))
         if self.height >= job.worth.scallop:
             raise InvalidInput(f"Ra {1000 * roughness:g} um stands for scallops of {self.height:.3g} mm, not below the "
-                               f"scallop height {job.worth.scallop:g} mm: give a greater scallop height, at which "
+                               f"scallop height {job.worth.scallop:g} mm: give {GREATER_SCALLOP}, at which "
                                "strip widths are taken, or a smaller roughness")
         self.tried = 0
 
@@ -254,9 +255,9 @@ class RoughnessSearch:
         begin = (f"no lean along the feed near {where} of face {self.face.label} is free with a strip of {low:.4g} to "
                  f"{high:.4g} mm at a height of {self.wish.scallop:g} mm")
         if any(free) and wide[free].max() < low:
-            return f"{begin}: strips are {wide[free].max():.4g} mm wide at most; take a smaller scallop height"
+            return f"{begin}: strips are {wide[free].max():.4g} mm wide at most; take {SMALLER_SCALLOP}"
         if any(free) and wide[free].min() > high:
-            return f"{begin}: strips are {wide[free].min():.4g} mm wide at least; take a smaller cutter"
+            return f"{begin}: strips are {wide[free].min():.4g} mm wide at least; take {SMALLER_CUTTER}"
         return f"{begin}: take another cutter, scallop height or range"
 
     def found(self, feed: str) -> SmoothPasses:
@@ -355,7 +356,7 @@ class RoughnessSearch:
             best = self._best(lane, [best.spline], ends)
         where = np.round(lane.bench.point[np.argmax(bad)], 2).tolist()
         raise InvalidInput(f"the tool comes too close near {where} however much it leans along the pass: choose "
-                           "another strategy, a longer stick-out or a slimmer holder")
+                           f"another strategy, {LONGER_STICKOUT} or a slimmer holder")
 
     def _from(self, lane: PassConstraints, last: SmoothedAxes | None) -> SmoothedAxes:
         """Smooth rotary axes of a pass, from those of the one before where they serve about as well there."""

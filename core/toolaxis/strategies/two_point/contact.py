@@ -11,6 +11,7 @@ from math import radians
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toolaxis.advice import SMALLER_CUTTER
 from toolaxis.errors import InvalidInput
 from toolaxis.strategies.two_point.rings import CONTACT, ContactSet, CornerCircles, Posture, check_tolerance, rings
 
@@ -132,7 +133,7 @@ def _hollow(radius: float, rho: ArrayLike) -> Array:
     if not (found > radius).all():
         worst = float(np.min(found))
         raise InvalidInput(f"radius of curvature across the feed is {worst} mm: two-point contact needs a hollow "
-                           f"surface less tight than the cutter's {radius} mm; take a smaller cutter, or one contact "
+                           f"surface less tight than the cutter's {radius} mm; take {SMALLER_CUTTER}, or one contact "
                            "where the surface is convex")
     return found
 

@@ -10,6 +10,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import SMALLER_CUTTER
 from toolaxis.cldata.toolpath import Motion, ToolPath
 from toolaxis.errors import InvalidInput
 from toolaxis.feasibility.surroundings import OTHER, SKIN
@@ -159,7 +160,7 @@ def add_links(job: FaceProblem, work: TwoPointInputs, strips: tuple[Strip, ...])
     """
     passes = strokes(work, strips, job.direction, job.progress)
     if not passes:
-        raise InvalidInput("no pass holds any of the face: take a smaller cutter, or another feed")
+        raise InvalidInput(f"no pass holds any of the face: take {SMALLER_CUTTER}, or another feed")
     up = np.asarray(unit(np.concatenate([one.axis for some in passes for one in some]).mean(axis=0)))
     walls = any(group.role == OTHER or (group.role == SKIN and any(face is not work.face for face in group.faces))
                 for group in job.groups)
@@ -230,7 +231,7 @@ def describe_contacts(work: TwoPointInputs, strips: tuple[Strip, ...]) -> tuple[
     words = [f"{REASONS[code]} on {100 * count[code] / len(rows):.1f} % of the passes" for code in range(len(REASONS))
              if count[code] and (code != TWO or work.posture == "two-point")]
     if count[TIGHT]:
-        words.append("material higher than the tolerance stays there for a smaller cutter")
+        words.append(f"material higher than the tolerance stays there for {SMALLER_CUTTER}")
     return tuple(words)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.advice import SMALLER_ONE
 from toolaxis.errors import InvalidInput
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.strategies.two_point.inputs import TwoPointInputs
@@ -208,7 +209,7 @@ def next_strip(work: TwoPointInputs, covered: Array, guess: float, leaning: str)
         found = strip(work, min(step, s1), leaning)
         ok = ~left_out(found)
         if not ok.any():
-            raise InvalidInput("the cutter comes within the tolerance nowhere along a pass: take a smaller one, or "
+            raise InvalidInput(f"the cutter comes within the tolerance nowhere along a pass: {SMALLER_ONE}, or "
                                "another feed")
         ahead = float((covered + found.halves[:, 0])[ok].min())
         spare = ahead - found.step
@@ -245,8 +246,8 @@ def lay_strips(work: TwoPointInputs, leaning: str = "ahead", progress: Progress 
         progress.report("passes", int(1000 * (min(covered.min(), s1) - s0) / (s1 - s0)), 1000)
         one = next_strip(work, covered, guess, leaning)
         if (found and one.step <= found[-1].step + 1e-6 * (s1 - s0)) or len(found) >= MOST:
-            raise InvalidInput("strips are too narrow to place passes: the cutter does not fit the surface; take a "
-                               "smaller one, or another feed")
+            raise InvalidInput("strips are too narrow to place passes: the cutter does not fit the surface; "
+                               f"{SMALLER_ONE}, or another feed")
         found.append(one)
         ok = ~left_out(one)
         covered = np.maximum(covered, np.where(ok, one.step + one.halves[:, 1], one.step))

@@ -73,6 +73,7 @@ class _Thread(QtCore.QThread):
         """Compute; called in the thread."""
         try:
             _load()
+            from toolaxis.advice import LARGER_SCALLOP
             from toolaxis.errors import Cancelled, ToolAxisError
             from toolaxis.progress import Progress
         except ImportError as reason:
@@ -88,7 +89,7 @@ class _Thread(QtCore.QThread):
         except ImportError as reason:
             self.message = f"{reason}: install what is missing by the Addon Manager"
         except MemoryError:
-            self.message = "the computer's memory does not suffice: choose a larger scallop height or fewer faces"
+            self.message = f"the computer's memory does not suffice: choose {LARGER_SCALLOP} or fewer faces"
         except Exception as reason:  # our own bug: the panel says so, the traceback is for the report
             self.message = f"an error inside Tool Axis ({type(reason).__name__}: {one_line(reason)}); please report it"
             self.trace = traceback.format_exc()

@@ -9,6 +9,8 @@ from freecad.toolaxis.gui.widgets import palette
 from freecad.toolaxis.gui.widgets.quantity import length_text
 from PySide import QtCore, QtGui, QtWidgets
 
+from toolaxis.plan.tally import is_tally
+
 translate = FreeCAD.Qt.translate
 
 _MARGIN, _HEIGHT, _LOW = 12, 300, 84
@@ -25,7 +27,7 @@ def no_map(found):
     """
     if found.lead is not None:
         return translate("ToolAxis", "No map: the axis moves along the passes.")
-    if found.axis is None and any("axes tested" in why for why in found.reasons):
+    if found.axis is None and any(map(is_tally, found.reasons)):
         return translate("ToolAxis", "No map was kept of the axes that were looked at: the reasons stand below.")
     if found.axis is None:
         return translate("ToolAxis", "No map: no axis was looked at.")
