@@ -30,6 +30,10 @@ class InvalidInput(ToolAxisError, ValueError):
     """A value given by the caller breaks a rule; the message names quantity, value, index, rule and remedy."""
 
 
+class PartMisplaced(InvalidInput):
+    """A machine cannot carry out a plan where its part stands on the table: another place there may help."""
+
+
 class UnsupportedGeometry(ToolAxisError):
     """The geometry is valid but of a kind that cannot be handled; the message names it and what to do."""
 

@@ -163,6 +163,10 @@
    <translation>Jede Fläche hat eine Achse. {} OK stellt sie ins Dokument.</translation>
   </message>
   <message>
+   <source>Export</source>
+   <translation>Exportieren</translation>
+  </message>
+  <message>
    <source>Face {}</source>
    <translation>Fläche {}</translation>
   </message>
@@ -425,6 +429,10 @@
   <message>
    <source>Press Compute to find the axes.</source>
    <translation>Berechnen findet die Achsen.</translation>
+  </message>
+  <message>
+   <source>Raise the part by {}</source>
+   <translation>Teil um {} höher setzen</translation>
   </message>
   <message>
    <source>Reading the part</source>
@@ -1168,6 +1176,10 @@
   <message>
    <source>Program</source>
    <translation>Programm</translation>
+  </message>
+  <message>
+   <source>Sets the part higher on the table, in Z of its origin, and writes. It may help; only the new program tells.</source>
+   <translation>Setzt das Teil auf dem Tisch höher, in Z seines Ursprungs, und schreibt. Das kann helfen; erst das neue Programm zeigt es.</translation>
   </message>
   <message>
    <source>Stop</source>

@@ -7,7 +7,7 @@ from math import degrees
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, PartMisplaced
 from toolaxis.machine.kinematics import nearest_turn, placement, rotary_angles
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -167,17 +167,32 @@ def _check_given_angles(op: Operation, angles: ArrayLike, mounting: Mounting) ->
     return row[None]
 
 
-def _solutions(op: Operation, mounting: Mounting) -> Array:
-    """Rotary angles in the machine's steps at which an operation can be carried out, (s, m) rad."""
-    assert op.path is not None
+def check_reach(op: Operation, mounting: Mounting) -> None:
+    """Refuse an operation whose fixed axis no position of a machine reaches, wherever the part stands.
+
+    Parameters
+    ----------
+    op : Operation
+    mounting : Mounting
+
+    Raises
+    ------
+    InvalidInput
+    """
     axis = _fixed_axis_of(op)
-    rows = mounting.solutions(axis)
-    if not len(rows):
+    if not len(mounting.solutions(axis)):
         why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
         raise InvalidInput(f"{op.name}: {why}; plan for this machine, or post for another")
+
+
+def _solutions(op: Operation, mounting: Mounting) -> Array:
+    """Rotary angles in the machine's steps at which an operation can be carried out, (s, m) rad."""
+    check_reach(op, mounting)
+    assert op.path is not None
+    axis = _fixed_axis_of(op)
     rows = mounting.hold_side(op.path.cl, axis)
     if not len(rows):
-        raise InvalidInput(f"{op.name}: {mounting.out_of_travel(op.path.cl, axis)}; move the part on the table")
+        raise PartMisplaced(f"{op.name}: {mounting.out_of_travel(op.path.cl, axis)}; move the part on the table")
     return rows
 
 

@@ -124,6 +124,87 @@ def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
     assert not form.write.isEnabled()
 
 
+def ready_for_linuxcnc(desk, form, folder, z):
+    """The panel filled in for a program, the origin at a height on the table."""
+    desk.type(form.folder, str(folder))
+    form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
+    form.machine.setCurrentIndex(form.machine.findData("bc-table-table"))
+    form.offsetZ.setValue(z)
+
+
+def test_a_part_inside_the_table_is_raised_by_a_click_and_the_program_is_written(desk, operation, tmp_path):
+    """Found: the machine met its table, and only the refusal told that the part may be moved."""
+    form = export_panel(desk)
+    ready_for_linuxcnc(desk, form, tmp_path / "plan", -85)
+    written(desk, form)
+    assert "the cutter meets the " in form.message.text() and "move the part on the table" in form.message.text()
+    assert form.raisePart.isVisible() and not (tmp_path / "plan").exists()
+    assert form.raisePart.text() == "Raise the part by 85 mm", form.raisePart.text()
+    desk.shot("81-export-raise")
+    form.offsetZ.setValue(-80)
+    assert not form.raisePart.isVisible(), "it was offered for another height"
+    form.offsetZ.setValue(-85)
+    written(desk, form)
+    desk.press(form.raisePart)
+    desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is written")
+    assert form.offsetZ.value() == 0 and not form.raisePart.isVisible()
+    assert (tmp_path / "plan" / "program-linuxcnc.ngc").exists(), form.message.text()
+    form.offsetX.setValue(5000)
+    written(desk, form)
+    assert "leave its travel" in form.message.text() and not form.raisePart.isVisible(), "no height helps"
+
+
+def test_the_machine_of_the_document_goes_along_with_the_raised_part(desk, operation, tmp_path):
+    from freecad.toolaxis.document.machine import machine_of, place_machine
+
+    document = operation.Document
+    place_machine(document, "bc-table-table", (0, 0, -85), ())
+    form = export_panel(desk)
+    assert form.offsetZ.value() == -85
+    ready_for_linuxcnc(desk, form, tmp_path / "plan", -85)
+    written(desk, form)
+    desk.press(form.raisePart)
+    desk.wait(lambda: form.write.isEnabled() and not form.stop.isEnabled(), "it is written")
+    assert machine_of(document).Offset == Vector(0, 0, 0) and form.files.count()
+    desk.press(desk.standard_button("Close"))
+    desk.wait(lambda: desk.form("ToolAxisExport") is None, "the panel closes")
+    place_machine(document, "bc-table-table", (0, 0, 33), ())
+    form = export_panel(desk)
+    assert form.offsetZ.value() == 33 and form.dialect.currentData() == "linuxcnc", "it was changed since"
+
+
+def test_what_was_written_last_is_offered_again(desk, operation, tmp_path):
+    document = operation.Document
+    form = export_panel(desk)
+    ready_for_linuxcnc(desk, form, tmp_path / "mine", 60)
+    form.report.setChecked(False)
+    written(desk, form)
+    desk.press(desk.standard_button("Close"))
+    desk.wait(lambda: desk.form("ToolAxisExport") is None, "the panel closes")
+    assert not operation.Stale and "Touched" not in operation.State
+    document.saveAs(str(tmp_path / "part.FCStd"))
+    name = operation.Name
+    FreeCAD.closeDocument(document.Name)
+    again = FreeCAD.openDocument(str(tmp_path / "part.FCStd"))
+    desk.pump(0.3)
+    assert again.getObject(name).Exported
+    form = export_panel(desk)
+    assert form.folder.text() == str(tmp_path / "mine") and form.dialect.currentData() == "linuxcnc"
+    assert form.machine.currentData() == "bc-table-table" and form.offsetZ.value() == 60
+    desk.shot("82-export-again")
+    steps = again.UndoCount
+    written(desk, form)
+    assert again.UndoCount == steps + 1, "the file it stands in is another"
+    written(desk, form)
+    assert again.UndoCount == steps + 1, "nothing has changed"
+    desk.press(desk.standard_button("Close"))
+    desk.wait(lambda: desk.form("ToolAxisExport") is None, "the panel closes")
+    again.saveAs(str(tmp_path / "copy.FCStd"))
+    form = export_panel(desk)
+    assert form.folder.text() == str(tmp_path / "copy-plan"), "a copy gets a folder of its own"
+    assert form.dialect.currentData() == "linuxcnc"
+
+
 def machine_panel(desk, name, offset):
     desk.gui.Selection.clearSelection()
     desk.gui.runCommand("ToolAxis_Machine")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from toolaxis.errors import InvalidInput
+from toolaxis.errors import InvalidInput, PartMisplaced
 from toolaxis.job.files.plan_folder import read_json
 from toolaxis.job.planning.sequencing import sequence_operations
 from toolaxis.machine.kinematics import placement
@@ -15,6 +15,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.post.apt import operation_text
 from toolaxis.post.context import Options
 from toolaxis.post.dialects.registry import APT, dialect_named, tip_control_of
+from toolaxis.post.indexed_positions import check_reach
 from toolaxis.post.program import bare_program, program_of, program_text
 from toolaxis.post.setup_sheet import moving_sheet_text, sheet_text
 from toolaxis.post.tcp_program import moves, moving_text
@@ -46,7 +47,8 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
     Raises
     ------
     InvalidInput
-        When the dialect is not known, needs a machine, or cannot express the plan.
+        When the dialect is not known, needs a machine, or cannot express the plan; `PartMisplaced` where another
+        place on the table may help.
     """
     if dialect == APT:
         return {f"{op.name}.apt": operation_text(op, plan.inputs) for op in plan.operations if op.path is not None}
@@ -56,21 +58,24 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
     if len(plan.tools) == 1:
         plan, = plan.by_tool()  # at its feed and speed
         mounting = replace(mounting, tool_length=plan.tools[0].gauge_length or mounting.tool_length)
+    chosen = Options() if options is None else options
+    for op in plan.operations:
+        if op.done and op.orientation.lead is None and op.number not in chosen.angles:
+            check_reach(op, mounting)  # refused first, and at once: no other place on the table helps
     arranged_for = _choose_angles(plan, mounting)
     for op, stood in zip(plan.operations, arranged_for.operations, strict=True):
         if op.done and not stood.done:
-            raise InvalidInput(f"{op.name}: {stood.orientation.reasons[0].removeprefix('infeasible: ')}; move the part "
-                               "on the table, or plan for this machine")
+            why = stood.orientation.reasons[0].removeprefix("infeasible: ")
+            raise PartMisplaced(f"{op.name}: {why}; move the part on the table, or plan for this machine")
     if arranged_for.in_the_way:
-        raise InvalidInput(f"the machine meets something between operations: {arranged_for.in_the_way[0]}; move the "
-                           "part on the table, or plan again")
+        raise PartMisplaced(f"the machine meets something between operations: {arranged_for.in_the_way[0]}; move the "
+                            "part on the table, or plan again")
     angles = {op.number: op.rotary for op in arranged_for.operations if op.rotary}
     if moves(plan):
         control, file = tip_control_of(found), f"program-{dialect}{found.suffix}"
         text = moving_text(plan, mounting, control, options, name)
         sheet = moving_sheet_text(bare_program(plan, mounting, found, options, name), control, file, verdict)
         return {file: text, f"setup-{dialect}.md": sheet}
-    chosen = Options() if options is None else options
     program = program_of(arranged_for, mounting, found, replace(chosen, angles={**angles, **chosen.angles}), name)
     file = f"program-{dialect}{found.suffix}"
     sheet = sheet_text(program, found, file, verdict)

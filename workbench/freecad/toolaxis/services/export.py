@@ -2,9 +2,11 @@
 
 import json
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.util import find_spec
 from itertools import count
 from pathlib import Path
+from typing import NamedTuple
 
 from freecad.toolaxis.document.blade_links import turned_copies
 from freecad.toolaxis.document.inputs import inputs_of
@@ -17,6 +19,7 @@ from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.stale_label import plain_label
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.services.arguments import operation_of, progress_of
+from freecad.toolaxis.services.background import one_line
 
 #: What operations of one folder have in common, and how it is called in messages.
 _SHARED = {"scallop": "scallop heights", "tolerance": "machining tolerances", "allowance": "allowances",
@@ -49,6 +52,18 @@ class Wish:
     machine: str = ""
     offset: tuple | None = None
     report: bool = False
+
+
+class WriteOutcome(NamedTuple):
+    """What came of writing.
+
+    names : of the files, none where the part stands in a wrong place on the machine's table;  refusal : what is wrong
+    with that, English;  height : by how much the part is to be raised there, mm, 0 where that does not help.
+    """
+
+    names: list
+    refusal: str = ""
+    height: float = 0.0
 
 
 def missing_for_report():
@@ -107,6 +122,31 @@ def task(operations, folder, wish=None):
         return _write(gather(progress), Path(folder), wish, (verdict, progress))
 
     return compute
+
+
+def with_height(compute):
+    """The writing of operations that looks for a better place on the table where the machine cannot go.
+
+    Parameters
+    ----------
+    compute : callable
+        Of `task`.
+
+    Returns
+    -------
+    callable
+        Takes a `toolaxis.progress.Progress` and returns a `WriteOutcome`.
+    """
+
+    def compute_or_look(progress):
+        from toolaxis.errors import PartMisplaced
+
+        try:
+            return WriteOutcome(compute(progress))
+        except PartMisplaced as reason:
+            return WriteOutcome([], one_line(reason), reason.missing_height(progress))
+
+    return compute_or_look
 
 
 def plan_task(operations):
@@ -353,8 +393,14 @@ def _write(plan, folder, wish, told):
 def _program(plan, wish, name, verdict):
     """The files of a program."""
     from toolaxis.cad.machines import load_machine
+    from toolaxis.errors import PartMisplaced
+    from toolaxis.job.output.height_on_table import find_missing_height
     from toolaxis.job.output.post import post_plan
     from toolaxis.machine.setup import Mounting
 
     mounting = Mounting(load_machine(wish.machine), wish.offset) if wish.machine else None
-    return post_plan(plan, wish.dialect, mounting, name=name, verdict=verdict)
+    try:
+        return post_plan(plan, wish.dialect, mounting, name=name, verdict=verdict)
+    except PartMisplaced as reason:
+        reason.missing_height = partial(find_missing_height, plan, mounting)
+        raise

@@ -4,15 +4,17 @@ from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
-from freecad.toolaxis.document.machine import machine_of
+from freecad.toolaxis.document.kept_export import keep_export, kept_export
+from freecad.toolaxis.document.machine import machine_of, place_machine
 from freecad.toolaxis.document.machine_limits import available
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
+from freecad.toolaxis.gui.widgets.quantity import length_text
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services.background import BackgroundWork, sentence
-from freecad.toolaxis.services.export import Wish, missing_for_report, task
+from freecad.toolaxis.services.export import Wish, missing_for_report, task, with_height
 from freecad.toolaxis.services.macros import list_of, record
-from freecad.toolaxis.services.messages import line_of
+from freecad.toolaxis.services.messages import line_of, shown
 from PySide import QtWidgets
 
 translate = FreeCAD.Qt.translate
@@ -31,12 +33,17 @@ class ExportPanel(Panel):
         super().__init__(document, load_form("export"))
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "export.svg")))
         self.operations = list(operations)
+        self.lacking = 0.0
         self._fill()
         form = self.form
         form.browse.clicked.connect(self._browse)
         form.write.clicked.connect(self.write)
         form.stop.clicked.connect(self.stop)
-        form.dialect.currentIndexChanged.connect(self._show)
+        form.raisePart.clicked.connect(self.raise_part)
+        form.dialect.currentIndexChanged.connect(self._place_changed)
+        form.machine.currentIndexChanged.connect(self._place_changed)
+        for spin in self._spins:
+            spin.valueChanged.connect(self._place_changed)
         self._follow()
         tell(form.message, translate("ToolAxis", "{} operations: plan.json and their CL files are written.").format(
             len(self.operations)))
@@ -72,17 +79,30 @@ class ExportPanel(Panel):
                 ", ".join(missing)))
             form.report.setChecked(False)
             form.report.setEnabled(False)
-        for shown, name in available().items():
-            form.machine.addItem(shown, name)
+        for title, name in available().items():
+            form.machine.addItem(title, name)
         standing = machine_of(self.document)
         if standing is not None:
-            index = form.machine.findData(standing.Machine)
-            if index < 0:
-                form.machine.addItem(standing.Machine, standing.Machine)
-                index = form.machine.count() - 1
-            form.machine.setCurrentIndex(index)
-            for spin, value in zip(self._spins, standing.Offset, strict=True):
-                spin.setValue(value)
+            self._pick(standing.Machine, standing.Offset)
+        self._fill_kept(kept_export(self.operations))
+
+    def _fill_kept(self, kept):
+        """What was written last is offered again."""
+        form = self.form
+        form.folder.setText(kept.get("folder", form.folder.text()))
+        form.dialect.setCurrentIndex(max(form.dialect.findData(kept.get("dialect", "")), 0))
+        if "machine" in kept:
+            self._pick(kept["machine"], kept["offset"])
+        form.report.setChecked(form.report.isEnabled() and kept.get("report", form.report.isChecked()))
+
+    def _pick(self, machine, offset):
+        """Choose a machine by name or file, and a place on its table; a file that is not in the list is added."""
+        combo = self.form.machine
+        if combo.findData(machine) < 0:
+            combo.addItem(machine, machine)
+        combo.setCurrentIndex(combo.findData(machine))
+        for spin, value in zip(self._spins, offset, strict=True):
+            spin.setValue(value)
 
     def _browse(self):
         name = QtWidgets.QFileDialog.getExistingDirectory(self.form, translate("ToolAxis", "Folder"),
@@ -96,6 +116,7 @@ class ExportPanel(Panel):
         if self.work is not None:
             return
         form.files.clear()
+        self.lacking = 0.0
         if not form.folder.text().strip():
             tell(form.message, translate("ToolAxis", "Give a folder."), bad=True)
             return
@@ -108,9 +129,9 @@ class ExportPanel(Panel):
         except Exception as reason:
             tell(form.message, sentence(reason), bad=True)
             return
-        self.work = BackgroundWork(compute)
+        self.work = BackgroundWork(with_height(compute))
         self.work.progressed.connect(lambda stage, share: self._progressed(stage, share))
-        self.work.done.connect(lambda names: self._done(folder, wish, names))
+        self.work.done.connect(lambda found: self._done(folder, wish, found))
         self.work.failed.connect(lambda text: self._ended(text, True))
         self.work.cancelled.connect(lambda: self._ended(translate("ToolAxis", "Stopped; the folder is as it was."),
                                                         True))
@@ -123,12 +144,33 @@ class ExportPanel(Panel):
         if self.work is not None:
             self.work.cancel()
 
+    def raise_part(self):
+        """Set the part higher on the table by what is missing, in the document's own machine too, and write."""
+        before = tuple(spin.value() for spin in self._spins)
+        after = (*before[:2], before[2] + self.lacking)
+        standing = machine_of(self.document)
+        if standing is not None and (standing.Machine, *standing.Offset) == (self.form.machine.currentData(), *before):
+            place_machine(self.document, standing.Machine, after, ())
+        self.form.offsetZ.setValue(after[2])
+        self.write()
+
+    def _place_changed(self, *_):
+        """Another program, machine or place: what was offered for the one before is gone."""
+        self.lacking = 0.0
+        self._show()
+
     def _progressed(self, stage, share):
         self.form.progress.setMaximum(1000 if share >= 0 else 0)
         self.form.progress.setValue(int(1000 * max(share, 0.0)))
         tell(self.form.message, line_of(stage))
 
-    def _done(self, folder, wish, names):
+    def _done(self, folder, wish, found):
+        if found.refusal:
+            self.lacking = found.height
+            self._ended(shown(found.refusal), True)
+            return
+        names = found.names
+        keep_export(self.operations, folder, wish)
         record(f"freecad.toolaxis.export({list_of(self.operations)}, {str(folder)!r}, freecad.toolaxis.{wish!r})")
         self.form.files.addItems(names)
         self._ended(translate("ToolAxis", "{} files in {}").format(len(names), folder), False)
@@ -143,6 +185,8 @@ class ExportPanel(Panel):
         form.progress.setVisible(writing)
         form.stop.setEnabled(writing)
         form.write.setEnabled(not writing and bool(self.operations))
+        form.raisePart.setText(translate("ToolAxis", "Raise the part by {}").format(length_text(self.lacking, 0)))
+        form.raisePart.setVisible(not writing and self.lacking > 0 and bool(self.operations))
         form.files.setVisible(bool(form.files.count()))
         for widget in (form.machine, form.machineLabel, form.offsetLabel, *self._spins):
             widget.setVisible(bool(form.dialect.currentData()))
