@@ -1671,8 +1671,8 @@
    <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
-   <source>Lists all faces, or only those that can be seen in the 3D view from where one looks now, or only those that cannot: hidden bodies and what other faces cover. Choose it again when the view was turned.</source>
-   <translation>Listet alle Flächen auf, oder nur die, die in der 3D-Ansicht von da zu sehen sind, von wo man gerade blickt, oder nur die anderen: ausgeblendete Körper und was andere Flächen verdecken. Nach dem Drehen der Ansicht neu wählen.</translation>
+   <source>Lists all faces, or only those that can be seen in the 3D view from where one looks now, or only those that cannot: hidden bodies and what other faces cover. The list follows when the view is turned.</source>
+   <translation>Listet alle Flächen auf, oder nur die, die in der 3D-Ansicht von da zu sehen sind, von wo man gerade blickt, oder nur die anderen: ausgeblendete Körper und was andere Flächen verdecken. Die Liste folgt, wenn die Ansicht gedreht wird.</translation>
   </message>
   <message>
    <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>

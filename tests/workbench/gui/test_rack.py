@@ -149,6 +149,55 @@ def test_faces_that_cannot_be_seen_are_listed_alone_or_left_out(desk, camera):
     assert form.faces.count() == 3 and shown("Up") == shown("Up") == ["Above", "Below", "Beside"]
 
 
+@pytest.mark.parametrize("camera", ["Orthographic", "Perspective"])
+def test_what_is_in_sight_follows_the_view_when_it_has_come_to_rest(desk, camera, monkeypatch):
+    """Found: the list stayed as the view had stood when it was chosen."""
+    import FreeCAD
+    from freecad.toolaxis.gui.plan import view_watch
+
+    document = FreeCAD.newDocument("TwoBalls")
+    for name, z in (("Above", 20), ("Below", 0)):
+        document.addObject("Part::Sphere", name).Placement.Base = FreeCAD.Vector(0, 0, z)
+    document.recompute()
+    view = desk.gui.getDocument(document.Name).ActiveView
+    view.setCameraType(camera)
+    view.viewTop()
+    view.fitAll()
+    form = desk.start(document.getObject("Above"))
+    desk.gui.Selection.addSelection(document.Name, "Below")
+    desk.press(form.addFaces)
+    choice = desk.opened[-1]().choice
+
+    def listed():
+        return [desk.text(form.faces, row).split(", ")[-1] for row in range(form.faces.count())
+                if not form.faces.isRowHidden(row)]
+
+    assert listed() == ["Above", "Below"] and not choice.watch._timer.isActive(), "nobody asked for what is in sight"
+    form.facesSeen.setFocus()
+    desk._key(form.facesSeen, desk.qt.Qt.Key_Down, "")
+    assert listed() == ["Above"] and choice.watch._timer.isActive()
+    desk.shot(f"88-in-sight-top-{camera}")
+    view.viewBottom()
+    desk.wait(lambda: listed() == ["Below"], "the list follows")
+    view.viewFront()
+    desk.wait(lambda: listed() == ["Above", "Below"], "the list follows again")
+    desk.shot(f"88-in-sight-front-{camera}")
+    document.getObject("Above").Visibility = False
+    view.viewTop()
+    desk.wait(lambda: listed() == ["Below"], "what is hidden hides nothing")
+    desk._key(form.facesSeen, desk.qt.Qt.Key_Up, "")
+    assert listed() == ["Above", "Below"] and not choice.watch._timer.isActive()
+    desk._key(form.facesSeen, desk.qt.Qt.Key_Down, "")
+    usual, looks = view_watch.camera_of, []
+    monkeypatch.setattr(view_watch, "camera_of", lambda of: looks.append(of) or usual(of))
+    desk.wait(lambda: looks, "the view is looked at")
+    desk.press(desk.standard_button("Cancel"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    looks.clear()
+    desk.pump(0.6)
+    assert not looks, "it is off when the panel is closed"
+
+
 def test_what_is_computed_is_lit_in_the_view(desk, grooved, form):
     panel = desk.opened[-1]()
     thing, name = grooved

@@ -217,7 +217,7 @@ def number_in(thing, shape, name):
     from toolaxis.errors import InvalidInput
 
     digits = name.removeprefix("Face")
-    count = len(shape.Faces)
+    count = shape.countElement("Face")
     if name.startswith("Face") and digits.isdigit() and 1 <= int(digits) <= count:
         return int(digits)
     if "." in name:

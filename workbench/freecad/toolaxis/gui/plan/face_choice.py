@@ -6,11 +6,13 @@ import FreeCAD
 import FreeCADGui
 from freecad.toolaxis.document.read_shapes import faces_by_number
 from freecad.toolaxis.gui.plan.camera import camera_of
-from freecad.toolaxis.gui.plan.face_list import ALL
+from freecad.toolaxis.gui.plan.face_list import ALL, face_key
 from freecad.toolaxis.gui.plan.selection import faces_of_only_body, selected_faces
 from freecad.toolaxis.gui.plan.skin_search import SkinSearch
+from freecad.toolaxis.gui.plan.view_watch import ViewWatch
+from freecad.toolaxis.services.background import BackgroundWork
 from freecad.toolaxis.services.obstacles import bodies_in
-from freecad.toolaxis.services.sight import hidden_faces
+from freecad.toolaxis.services.sight import scene_of
 from PySide import QtCore
 
 translate = FreeCAD.Qt.translate
@@ -38,6 +40,7 @@ class FaceChoice(QtCore.QObject):
         self.document, self.form, self.fields = document, form, fields
         self.skins = SkinSearch(form, fields.faces)
         self._numbered, self._lit = {}, None
+        self.watch, self.looking = ViewWatch(document, self), None
 
     def connect_widgets(self):
         """Begin to listen; what is filled in before tells nothing."""
@@ -50,6 +53,7 @@ class FaceChoice(QtCore.QObject):
         form.faces.itemSelectionChanged.connect(self._point_out)
         form.facesTold.installEventFilter(self)
         self.skins.found.connect(self.tell)
+        self.watch.rested.connect(self._look_again)
 
     def _add_selected(self):
         faces, problems = selected_faces(self.document)
@@ -60,9 +64,45 @@ class FaceChoice(QtCore.QObject):
 
     def _list_seen(self, kind):
         """List all faces, or those that can be seen as the view stands, or the others."""
-        listed = self.fields.faces.listed if kind != ALL else ()
-        beside = bodies_in(self.document, [thing for thing, _ in listed])
-        self.fields.faces.show_kind(kind, hidden_faces(listed, beside, camera_of(self.document)) if listed else ())
+        self._stop_looking()
+        if kind == ALL:
+            self.fields.faces.show_kind(kind)
+            return
+        self.fields.faces.show_kind(kind, self._hidden_task()(None))
+        self.watch.begin()
+
+    def _hidden_task(self):
+        """The keys of what cannot be seen as the view stands now, as a computation apart from the document."""
+        listed, camera = self.fields.faces.listed, camera_of(self.document)
+        keys = list(map(face_key, listed))
+        scene = scene_of(listed, bodies_in(self.document, [thing for thing, _ in listed]))
+        return lambda progress: [keys[k] for k in scene.hidden(camera, progress)]
+
+    def _look_again(self):
+        """The view was turned: list what can be seen now, found off the GUI thread."""
+        if not self.form.faces.isEnabled():  # it is computed; the list is looked at afterwards
+            self.watch.look_again()
+            return
+        if self.looking is not None:
+            self.looking.leave()
+        self.looking = BackgroundWork(self._hidden_task(), self)
+        self.looking.done.connect(self._looked)
+        self.looking.start()
+
+    def _looked(self, hidden):
+        self.looking = None
+        self.fields.faces.show_kind(self.form.facesSeen.currentIndex(), hidden)
+
+    def _stop_looking(self):
+        self.watch.leave()
+        if self.looking is not None:
+            self.looking.leave()
+            self.looking = None
+
+    def leave(self):
+        """Give up all that goes on."""
+        self.skins.leave()
+        self._stop_looking()
 
     def _offer_bodies(self):
         """Offer all bodies to be avoided but those that are machined."""

@@ -65,12 +65,12 @@ class FaceList:
         ----------
         faces : sequence of (object, str)
         """
-        known, count = set(map(_key, self._faces)), len(self._faces)
+        known, count = set(map(face_key, self._faces)), len(self._faces)
         for face in faces:
-            if _key(face) not in known:
-                known.add(_key(face))
+            if face_key(face) not in known:
+                known.add(face_key(face))
                 self._faces.append(face)
-                self._areas[_key(face)] = _area_of(*face)
+                self._areas[face_key(face)] = _area_of(*face)
         if len(self._faces) > count:
             self._changed()
         return len(self._faces) - count
@@ -83,17 +83,17 @@ class FaceList:
         skins : sequence of tuple of (object, str)
             Narrow planes and cylinders among them that are not in the list; nothing for a row for each face.
         """
-        known = set(map(_key, self._faces))
-        skins = tuple(skin for skin in skins if known.intersection(map(_key, skin)))
+        known = set(map(face_key, self._faces))
+        skins = tuple(skin for skin in skins if known.intersection(map(face_key, skin)))
         if skins != self._skins:
             self._skins = skins
-            self._areas = {_key(face): _area_of(*face) for skin in skins for face in skin} | self._areas
+            self._areas = {face_key(face): _area_of(*face) for skin in skins for face in skin} | self._areas
             self._list_rows()
 
     def _list_rows(self):
         """Write all rows anew."""
-        within = {_key(face) for skin in self._skins for face in skin}
-        rows = [*self._skins, *((face,) for face in self._faces if _key(face) not in within)]
+        within = {face_key(face) for skin in self._skins for face in skin}
+        rows = [*self._skins, *((face,) for face in self._faces if face_key(face) not in within)]
         if self._skins:
             rows.sort(key=lambda row: -(self._area(row) or 0.0))
         self.widget.clear()
@@ -106,7 +106,7 @@ class FaceList:
 
     def _area(self, row):
         """Area of the faces of a row, mm^2; None where one cannot be read."""
-        areas = [self._areas[_key(face)] for face in row]
+        areas = [self._areas[face_key(face)] for face in row]
         return None if None in areas else sum(areas)
 
     def _row(self, k):
@@ -143,10 +143,10 @@ class FaceList:
         ----------
         kind : int
             ALL, IN_SIGHT or HIDDEN.
-        hidden : sequence of (object, str)
-            Faces that cannot be seen.
+        hidden : iterable of tuple
+            Faces that cannot be seen, by `face_key`.
         """
-        self._kind, self._hidden = kind, frozenset(map(_key, hidden))
+        self._kind, self._hidden = kind, frozenset(hidden)
         self._filter()
 
     @property
@@ -171,7 +171,7 @@ class FaceList:
 
     def _is_of_kind(self, row):
         """Whether a row is asked for; it is hidden where all its faces are."""
-        return self._kind == ALL or self._hidden.issuperset(map(_key, self._row(row))) == (self._kind == HIDDEN)
+        return self._kind == ALL or self._hidden.issuperset(map(face_key, self._row(row))) == (self._kind == HIDDEN)
 
     def _matches(self, row):
         if not self._is_of_kind(row):
@@ -200,16 +200,16 @@ class FaceList:
         face : (object, str)
         """
         for k in range(self.widget.count()):
-            if _key(face) in map(_key, self._row(k)):
+            if face_key(face) in map(face_key, self._row(k)):
                 self.widget.setCurrentRow(k)
                 return self._row(k)
         return ()
 
     def remove_marked(self):
         """Remove the faces of the marked rows."""
-        marked = set(map(_key, self.marked))
+        marked = set(map(face_key, self.marked))
         if marked:
-            self._faces = [face for face in self._faces if _key(face) not in marked]
+            self._faces = [face for face in self._faces if face_key(face) not in marked]
             self._changed()
 
     def remove_object(self, name):
@@ -226,8 +226,13 @@ class FaceList:
         return gone
 
 
-def _key(face):
-    """What a face is known by."""
+def face_key(face):
+    """What a face is known by, also when its object is gone: names of document, object and face.
+
+    Parameters
+    ----------
+    face : (object, str)
+    """
     thing, name = face
     return thing.Document.Name, thing.Name, name
 

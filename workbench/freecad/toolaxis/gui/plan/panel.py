@@ -422,7 +422,7 @@ class PlanPanel(Panel):
         self.setup_preview.forget()
 
     def _let_go(self):
-        self.choice.skins.leave()
+        self.choice.leave()
         self.player.close()
         self.view.leave()
         self.preview.clear()
