@@ -133,7 +133,7 @@ def test_the_targets_and_extras_of_the_page_on_installing_are_there() -> None:
 
 SPANS = [(page.name, span) for page in sorted(MANUAL.glob("*.md")) for span in spans(page.name)]
 #: What stands for a value of one's own.
-OWN = {"N": "2", "WORK": "1000", "NAME": "mikron-ucp-710", "LIBRARY": "general-rack", "DIR": "absent",
+OWN = {"N": "2", "MIN": "5", "WORK": "1000", "NAME": "mikron-ucp-710", "LIBRARY": "general-rack", "DIR": "absent",
        "FILE": "absent.json", "NAME|FILE": "mikron-ucp-710", "PART.step": "absent.step", "JOBS.toml": "absent.toml"}
 #: What an option asks for besides.
 ASKS_FOR = {"--holder": ["--tool", "ball:8", "--stickout", "60"], "--least-lean": ["--tool", "ball:8"],

@@ -171,17 +171,17 @@ def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zon
     to the height for which that strip was laid.
     """
     worth = job.worth
-    uv = _scatter_places(worth.face, _SAMPLES)
-    for zone in left:
-        uv = uv[~worth.face.trimmed(zone.loops).contains(uv)]
-    if not len(uv):
-        return None
+    places = _scatter_places(worth.face, _SAMPLES)
+    zones = [worth.face.trimmed(zone.loops) for zone in left]
+    uv = _outside_of(zones, places[:_FIRST])
     limit = FACTOR * worth.scallop
     excess = Excess(worth.face, worth.tool, made.path, worth.allowance + limit)
-    above = excess(uv[:_FIRST], _TOLD * worth.scallop)
+    above = excess(uv, _TOLD * worth.scallop)
     if not (above > 0).any():
         return None
-    above = np.concatenate([above, excess(uv[_FIRST:], _TOLD * worth.scallop)])
+    further = _outside_of(zones, places[_FIRST:])
+    uv = np.concatenate([uv, further])
+    above = np.concatenate([above, excess(further, _TOLD * worth.scallop)])
     d = worth.face.evaluate(uv)
     area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
     order = np.argsort(-above, kind="stable")
@@ -194,6 +194,13 @@ def _find_closer_share(job: FaceProblem, made: FurtherPasses, left: Sequence[Zon
     else:
         step = 1.0 if job.laid_for == 1 else _STEP
     return job.laid_for * min(step, _CLOSER * limit / (limit + highest))
+
+
+def _outside_of(zones: Sequence[Face], uv: Array) -> Array:
+    """Those of some places that lie in none of the zones, (k, 2)."""
+    for zone in zones:
+        uv = uv[~zone.contains(uv)]
+    return uv
 
 
 @lru_cache(maxsize=2)  # each candidate asks for those of the same face
