@@ -228,7 +228,7 @@ def test_a_plan_ends_when_its_minutes_are_over_and_keeps_finished_faces(sheet: P
     monkeypatch.setattr(TimeLimit, "is_up", lambda self: len(begun) > 1)
     out = tmp_path / "out"
     assert main(["plan", str(sheet), *FAST, "--faces=1,2", "--workers=1", "--minutes=5", "--out", str(out)]) == 1
-    assert "5 min were over" in capsys.readouterr().err
+    assert "as the 5 min of --minutes were over" in capsys.readouterr().err
     document = strict((out / "plan.json").read_text())
     assert document["outcome"] == "cancelled" and [op["face"] for op in document["operations"]] == [1]
     assert (out / "op01-face1-passes.png").exists()

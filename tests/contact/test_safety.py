@@ -24,7 +24,7 @@ from toolaxis.contact.clearance.gouge import gouges, penetration
 from toolaxis.contact.clearance.surroundings import Surroundings
 from toolaxis.shape.face import Face
 
-SOME = range(12)
+SOME = range(20)
 
 # ---- the two statements --------------------------------------------------------------------------------------------
 
@@ -113,7 +113,7 @@ def test_gouges_are_never_missed(limit):
 
 
 def test_collisions_are_never_missed():
-    _check_collisions(np.vstack([_judge_collisions(seed) for seed in SOME[:6]]))
+    _check_collisions(np.vstack([_judge_collisions(seed) for seed in SOME[:12]]))
 
 
 @pytest.mark.long

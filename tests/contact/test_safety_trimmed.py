@@ -27,7 +27,7 @@ from toolaxis.contact.clearance.gouge import gouges, penetration
 from toolaxis.contact.clearance.surroundings import Surroundings
 from toolaxis.shape.face import Face
 
-GOUGES, COLLISIONS, TWINS = range(6), range(3), range(2)
+GOUGES, COLLISIONS, TWINS = range(12), range(3), range(3)
 DOMAINS = ((0.0, 1.0), (0.0, 1.0), (1000.0, 1003.0), (0.0, 1e-3), (-7.3, -7.299), (-500.0, 500.0))
 SIDE, PER_EDGE = 48, 40
 

@@ -74,9 +74,9 @@ def test_parts_divided_further_are_the_face(divider: Divider) -> None:
     found = candidates(divider, distances(waved(), TOOL, obstacles=POSTS))
     assert {one.radius for one in found} >= {6.0, np.inf}
     for one in found:
-        count = max((k for k in (4, 6) if np.isfinite(one.curve[k])), default=0)
-        if count:
-            _is_the_face(one, count)
+        for count in (4, 6):
+            if np.isfinite(one.curve[count]):
+                _is_the_face(one, count)
 
 
 def _is_the_face(one: RingDivision, count: int) -> None:

@@ -189,12 +189,12 @@ def test_the_grid_holds_no_place_outside_the_part_and_none_near_no_face(undercut
 
 
 def test_what_an_undercut_hides_is_proven_and_the_rest_is_not(undercut: ReachScene) -> None:
-    attack = Attack(undercut.part, TOOLS, axes=100)
+    attack = Attack(undercut.part, TOOLS, axes=200)
     for at, least in (((2, 0.0), 0.6), ((1, -13.0), 0.6)):
         claim, whole = look(undercut, at)
         assert least * whole < claim.area <= whole * (1 + 1e-9), at
         rng = np.random.default_rng(5)
-        for place in draw_places(claim, 4, rng):
+        for place in draw_places(claim, 6, rng):
             assert attack.reach(place).lack > 0, place.point
     floor, whole = look(undercut, (2, -10.0))
     assert 0.2 * whole < floor.area < 0.9 * whole

@@ -23,14 +23,14 @@ BALL = ta.Tool.ball(4, stickout=20, holder=HOLDER)
 BULL = ta.Tool.torus(diameter=5, corner_radius=0.5, stickout=20, holder=HOLDER)
 
 
-def contradictions(scene: ReachScene, face: Face, tools: list[ta.Tool], found: OutOfReach, count: int = 100) -> int:
-    """Postures at random places of what is proven that the exact check passes: 30 places, so many axes, each tool."""
+def contradictions(scene: ReachScene, face: Face, tools: list[ta.Tool], found: OutOfReach) -> int:
+    """Postures at random places of what is proven that the exact check passes: 30 places, 200 axes, each tool."""
     rng, limits = np.random.default_rng(11), scene.limits
     rows = found.rectangles[rng.integers(len(found.rectangles), size=60)]
     uv = rows[:, [0, 2]] + rng.random((60, 2)) * (rows[:, [1, 3]] - rows[:, [0, 2]])
     uv = uv[face.contains(uv)][:30]
     assert len(uv) >= 8
-    axes = unit(rng.normal(size=(count, 3)))
+    axes = unit(rng.normal(size=(200, 3)))
     axes = axes if limits is None else axes[limits.allowed(axes)]
     groups = group_surroundings(face, scene.tolerance, part=scene.part)
     return sum(int(Feasibility(face, tool, groups, scene.tolerance).reach(uv, axis, itself=True).sum())
@@ -76,8 +76,7 @@ def test_cones_cover_all_axes() -> None:
 
 def test_corners_are_out_of_reach_of_a_ball_that_is_too_large(pocket: ReachScene) -> None:
     corners = [face for face in pocket.part.faces if face.kind == "cylinder"]
-    assert len(corners) == 4
-    for face in corners[:2]:  # the others are mirrored
+    for face in corners:
         found = prove_out_of_reach(face, [BALL], pocket)
         assert found.area == pytest.approx(face.area) and found.by_corner == found.area
         assert contradictions(pocket, face, [BALL], found) == 0
@@ -154,12 +153,11 @@ def block_with_pits(seed: int) -> Part:
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 40))])
 def test_nothing_fits_where_that_is_proven(seed: int, request: pytest.FixtureRequest) -> None:
     part, tools = block_with_pits(seed), [BALL, BULL, ta.Tool.ball(2, stickout=12, holder=HOLDER)]
-    scene, claims = ReachScene.of(part), 0
-    most, axes = (100_000, 200) if request.config.getoption("--long") else (10_000, 60)
+    scene, claims, most = ReachScene.of(part), 0, 100_000 if request.config.getoption("--long") else 30_000
     for face in part.faces:
         found = prove_out_of_reach(face, tools, scene, most)
         assert found.area + found.reached <= face.area * (1 + 1e-9)
         if found.area > 0.02 * face.area:
             claims += 1
-            assert contradictions(scene, face, tools, found, axes) == 0, face.number
+            assert contradictions(scene, face, tools, found) == 0, face.number
     assert claims, "some of the pits are too narrow"

@@ -43,7 +43,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     int
         0 where every sub-surface has an axis, 1 where one has none or the time was up, 130 where the user stopped it.
     """
-    late = TimeLimit(given.minutes)
+    time_limit = TimeLimit(given.minutes)
     spec = _spec(given)
     tool = _tools(given, spec)
     one = tool if isinstance(tool, Tool) else None
@@ -56,7 +56,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         from toolaxis.job.planning.parallel import check_workers
         from toolaxis.job.planning.pipeline import plan
 
-        with compiling_ahead(), show_progress(lambda: asked() or late.is_up()) as progress:
+        with compiling_ahead(), show_progress(lambda: asked() or time_limit.is_up()) as progress:
             made = plan(spec.part, tool, spec.inputs.scallop, machine=spec.machine or None,
                         limits=spec.inputs.limits, offset=spec.place, faces=spec.numbers,
                         objective=given.objective, allowance=spec.inputs.allowance, stock=spec.inputs.stock,
@@ -71,7 +71,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         allowance_on=spec.inputs.allowance_on, lead=spec.inputs.lead,
                         origin=spec.inputs.origin, stock_box=spec.inputs.stock_box,
                         progress=progress)
-        stopped = made.outcome == "cancelled" and asked()
+        stopped = made.outcome == "cancelled" and (asked() or not time_limit.is_up())
         if made.outcome == "cancelled" and not made.operations:
             say("toolaxis: no face was finished: nothing is written")
             if stopped:
@@ -192,7 +192,7 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
     if made.outcome == "cancelled":
-        why = "" if stopped else f" as {given.minutes:g} min were over (--minutes)"
+        why = "" if stopped else f", as the {given.minutes:g} min of --minutes were over"
         say(f"toolaxis: stopped before all faces were done{why}; {Path(given.out) / PLAN} holds those that were")
         return 130 if stopped else 1
     return 0 if made.outcome == "complete" else 1

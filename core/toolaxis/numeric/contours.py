@@ -81,19 +81,22 @@ def _vertices(grid: SparseGrid, above: Bools, function: Callable[[Array], Array]
 
 def _crossed_edges(grid: SparseGrid, above: Bools, step: tuple[int, int]) -> Ints:
     """Lower nodes of the edges along one coordinate that cross zero, one row after the other, (k, 2)."""
-    node = np.column_stack(np.divmod(grid.above, grid.shape[1])) + 1
+    row_and_column = np.divmod(grid.above, grid.shape[1])
+    node = np.column_stack(row_and_column) + 1  # of the grid with one more around it
     before = node - step
     behind = node + step
-    last = ~above[behind[:, 0], behind[:, 1]]
-    first = ~above[before[:, 0], before[:, 1]]
-    low = np.concatenate([node[last], before[first]])
-    return np.asarray(low[np.lexsort(low.T[::-1])])
+    is_first = ~above[before[:, 0], before[:, 1]]
+    is_last = ~above[behind[:, 0], behind[:, 1]]
+    low = np.concatenate([before[is_first], node[is_last]])
+    order = np.lexsort((low[:, 1], low[:, 0]))
+    return np.asarray(low[order])
 
 
 def _places_of(grid: SparseGrid, nodes: Ints) -> Array:
     """Coordinates of nodes, (k, 2), of the grid with one more around it, which lie where its border does."""
-    x, y = grid.lines
-    return np.column_stack([x[np.clip(nodes[:, 0] - 1, 0, len(x) - 1)], y[np.clip(nodes[:, 1] - 1, 0, len(y) - 1)]])
+    last = np.array(grid.shape) - 1
+    inner = np.clip(nodes - 1, 0, last)
+    return np.column_stack([grid.lines[0][inner[:, 0]], grid.lines[1][inner[:, 1]]])
 
 
 def _values_at(grid: SparseGrid, nodes: Ints) -> Array:

@@ -107,9 +107,12 @@ class SparseGrid:
         They are those of `mark_above`, with the cells beyond the border of the grid.
         """
         marked = self.mark_above()
+        width = marked.shape[1]
         row, column = np.divmod(self.above, self.shape[1])
-        touched = np.unique(np.concatenate([(row + down) * marked.shape[1] + column + across
-                                            for down in (0, 1) for across in (0, 1)]))
-        i, j = np.divmod(touched, marked.shape[1])
-        whole = marked[i, j] & marked[i + 1, j] & marked[i, j + 1] & marked[i + 1, j + 1]
+        corner = row * width + column
+        touched = np.unique(np.concatenate([corner, corner + 1, corner + width, corner + width + 1]))
+        i, j = np.divmod(touched, width)
+        lower = marked[i, j] & marked[i, j + 1]
+        upper = marked[i + 1, j] & marked[i + 1, j + 1]
+        whole = lower & upper
         return np.column_stack([i[~whole], j[~whole]])

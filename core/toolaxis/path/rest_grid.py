@@ -75,7 +75,7 @@ def sample_grid(face: Face, function: Callable[[Array], Array], size: float,
     places = np.concatenate(asked)
     wanted[_cells_of(coarse, places[function(places) > 0])] = True
     lines = (_divide_line(coarse_u, parts_u), _divide_line(coarse_v, parts_v))
-    found = _Asked(function, whole, lines)
+    found = _AskedNodes(function, whole, lines)
     own = _own(face, coarse, inside)
     done = np.zeros_like(wanted)
     while wanted.any():
@@ -102,24 +102,32 @@ def sample_again(grid: SparseGrid, function: Callable[[Array], Array],
     function, whole
         As for `sample_grid`.
     """
-    rows, columns = grid.shape
-    # The last node of a block is the first of the next one, and the last line of the grid begins none.
-    across = (columns - 2) // _BLOCK + 1
-    row, column = np.divmod(grid.above, columns)
-    i = np.minimum(row // _BLOCK, (rows - 2) // _BLOCK)
-    j = np.minimum(column // _BLOCK, across - 1)
-    block_row, block_column = np.divmod(np.unique(i * across + j), across)
-    first = np.column_stack([block_row, block_column]) * _BLOCK
-    last = np.minimum(first + _BLOCK, (rows - 1, columns - 1))
-    found = _Asked(function, whole, grid.lines, among=grid.above)
-    found.ask(np.hstack([first, last]))
-    values = grid.values.copy()
+    found = _AskedNodes(function, whole, grid.lines, among=grid.above)
+    found.ask(_blocks_above(grid))
     new = SparseGrid.join(grid.lines, found.nodes, found.values)
-    above = np.flatnonzero(values > 0)
+    above = np.flatnonzero(grid.values > 0)
     known = np.isin(grid.nodes[above], new.nodes, assume_unique=True)
     seen = above[known]
+    values = grid.values.copy()
     values[seen] = np.minimum(values[seen], new.values_at(grid.nodes[seen]))
     return SparseGrid(grid.lines, grid.nodes, values)
+
+
+def _blocks_above(grid: SparseGrid) -> Ints:
+    """Blocks that hold nodes above zero, (k, 4) first and last lines of each.
+
+    The last line of a block is the first of the next one, and the last line of the grid begins none.
+    """
+    rows, columns = grid.shape
+    last_row = (rows - 2) // _BLOCK
+    last_column = (columns - 2) // _BLOCK
+    row, column = np.divmod(grid.above, columns)
+    i = np.minimum(row // _BLOCK, last_row)
+    j = np.minimum(column // _BLOCK, last_column)
+    numbers = np.unique(i * (last_column + 1) + j)
+    first = np.column_stack(np.divmod(numbers, last_column + 1)) * _BLOCK
+    last = np.minimum(first + _BLOCK, (rows - 1, columns - 1))
+    return np.hstack([first, last])
 
 
 def _touches_corner(nodes: Bools) -> Bools:
@@ -127,7 +135,7 @@ def _touches_corner(nodes: Bools) -> Bools:
     return np.asarray(nodes[1:, 1:] | nodes[:-1, 1:] | nodes[1:, :-1] | nodes[:-1, :-1])
 
 
-class _Asked:
+class _AskedNodes:
     """What a function says at nodes of a grid.
 
     nodes : list of (k,) arrays of int, their numbers;  values : list of (k,) arrays, 1 where it is sure to be above
