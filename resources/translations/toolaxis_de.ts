@@ -375,6 +375,10 @@
    <translation>Eine Drehachse ist geklemmt, die andere dreht längs der Bahnen. Braucht eine Maschine auf der Karte Grenzen.</translation>
   </message>
   <message>
+   <source>Operations: {}. plan.json and their CL files are written.</source>
+   <translation>Operationen: {}. plan.json und ihre CL-Dateien werden geschrieben.</translation>
+  </message>
+  <message>
    <source>Orientation {}</source>
    <translation>Orientierung {}</translation>
   </message>
@@ -1037,10 +1041,6 @@
   <message>
    <source>{} open</source>
    <translation>{} offen</translation>
-  </message>
-  <message>
-   <source>{} operations: plan.json and their CL files are written.</source>
-   <translation>{} Operationen: plan.json und ihre CL-Dateien werden geschrieben.</translation>
   </message>
   <message>
    <source>{} parts</source>

@@ -45,7 +45,7 @@ class ExportPanel(Panel):
         for spin in self._spins:
             spin.valueChanged.connect(self._place_changed)
         self._follow()
-        tell(form.message, translate("ToolAxis", "{} operations: plan.json and their CL files are written.").format(
+        tell(form.message, translate("ToolAxis", "Operations: {}. plan.json and their CL files are written.").format(
             len(self.operations)))
         self._show()
 
