@@ -83,19 +83,22 @@ def _peak(net: Array) -> Array:
     return np.asarray(size.max(axis=(2, 3)))
 
 
+#: How far weights may be from a product of one factor for each direction, as a share of them: rounding.
+_PRODUCT = 1e-14
+
+
 class _Bounds:
     """Bounds of a surface's derivatives over Bezier patches, each from those of lower order.
 
-    With S = c + A / w and c inside the patch, w Suu = Auu - 2 wu Su - wuu (S - c), and so on after Leibniz; each
-    factor is bounded by its net.
+    With S = c + A / w, w Suu = Auu - 2 wu Su - wuu (S - c), and so on after Leibniz; each factor is bounded by its net.
     """
 
-    def __init__(self, nets: Array, width_u: Array, width_v: Array) -> None:
+    def __init__(self, nets: Array, centre: Array, width_u: Array, width_v: Array) -> None:
+        """centre : (nu, nv, pu + 1, pv + 1, 3) array, the net of w c."""
         self.degree = (nets.shape[2] - 1, nets.shape[3] - 1)
         self.width = (width_u[:, None], width_v[None, :])
         self.w = nets[..., 3:]
-        centre = (nets[..., :3] / self.w).mean(axis=(2, 3), keepdims=True)
-        self.a = nets[..., :3] - self.w * centre
+        self.a = nets[..., :3] - centre
         self.least = self.w.min(axis=(2, 3, 4))
         self.known: dict[tuple[int, int], Array] = {(0, 0): _peak(self.a / self.w)}
 
@@ -137,5 +140,30 @@ def derivative_bounds(nets: Array, width_u: Array, width_v: Array, *orders: int)
     (nu, nv, k) array
         One order after the other.
     """
-    bounds = _Bounds(nets, width_u, width_v)
-    return np.stack([bounds.of(order - k, k) for order in orders for k in range(order + 1)], axis=-1)
+    w = nets[..., 3:]
+    places = nets[..., :3] / w
+    middle = _Bounds(nets, w * places.mean(axis=(2, 3), keepdims=True), width_u, width_v)
+    # Derivatives along u are those of S less any function of v, and the other way round.  That matters where a patch is
+    # much longer than its bends are wide, as on fillets: far from c its own length would count as a bend.
+    if _vary_as_products(w):
+        along_u = _Bounds(nets, w * places.mean(axis=2, keepdims=True), width_u, width_v)
+        along_v = _Bounds(nets, w * places.mean(axis=3, keepdims=True), width_u, width_v)
+    else:
+        along_u = along_v = middle
+    found = []
+    for order in orders:
+        for k in range(order + 1):
+            bound = middle.of(order - k, k)
+            if k < order:
+                bound = np.minimum(bound, along_u.of(order - k, k))
+            if k > 0:
+                bound = np.minimum(bound, along_v.of(order - k, k))
+            found.append(bound)
+    return np.stack(found, axis=-1)
+
+
+def _vary_as_products(w: Array) -> bool:
+    """Whether weights (..., pu + 1, pv + 1, 1) differ, and are products of one factor for each direction."""
+    first = w[..., :1, :1, :]
+    product = w[..., :1, :, :] * w[..., :, :1, :] / first
+    return bool((w != first).any() and (np.abs(product - w) <= _PRODUCT * w).all())
