@@ -1,13 +1,15 @@
 """Progress reports and cancellation: the one object that long work is handed, and what reports tell of the rest."""
 
+import math
 import re
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from toolaxis.errors import Cancelled
+from toolaxis.errors import Cancelled, InvalidInput
 
 #: "face 4a (2 of 9): axes" is the second of nine pieces of work.
 _PIECE = re.compile(r"^(.*?)[^:]*\((\d+) of (\d+)\)")
@@ -86,6 +88,30 @@ class Progress:
 
 
 NO_PROGRESS = Progress()
+
+class TimeLimit:
+    """Minutes after which work is to stop, from when this is made: its `is_up` serves as `cancelled` of a `Progress`.
+
+    Parameters
+    ----------
+    minutes : float or None
+        None for no limit.
+
+    Raises
+    ------
+    InvalidInput
+        When it is not above zero.
+    """
+
+    def __init__(self, minutes: float | None) -> None:
+        if minutes is not None and not minutes > 0:
+            raise InvalidInput(f"minutes is {minutes:g}: it must be above zero; leave it out for no limit")
+        self._end = math.inf if minutes is None else time.monotonic() + 60 * minutes
+
+    def is_up(self) -> bool:
+        """Whether the time is over."""
+        return time.monotonic() > self._end
+
 
 _HEARD: ContextVar[Progress] = ContextVar("toolaxis_progress", default=NO_PROGRESS)
 

@@ -1,16 +1,18 @@
-"""A face on which the program fails costs its job no other face."""
+"""A face on which the program fails, or for which there is no time, costs its job no other face."""
 
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import toolaxis as ta
 from toolaxis.batch.jobfile import read_jobs
 from toolaxis.batch.labour import answer_task
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.output import verify as judge
+from toolaxis.progress import TimeLimit
 from toolaxis.shape.part import Part
 
 
@@ -40,3 +42,26 @@ def test_a_fault_in_judging(job: list[dict[str, object]], tmp_path: Path, monkey
     answer = answer_task(read_jobs(job)[0].task(), tmp_path, {})
     assert answer.outcome == "incomplete" and "op02-face2: failed: ZeroDivisionError" in answer.reason
     assert [op["passed"] for op in json.loads(answer.files["verdict.json"])["operations"]] == [True, False]
+
+
+def test_a_job_whose_minutes_are_over(job: list[dict[str, object]], tmp_path: Path,
+                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: set[int] = set()
+    witness = Feasibility.witness
+
+    def note(self: Feasibility, axis: NDArray[np.float64]) -> object:
+        begun.add(self.face.number)
+        return witness(self, axis)
+
+    monkeypatch.setattr(Feasibility, "witness", note)
+    monkeypatch.setattr(TimeLimit, "is_up", lambda self: 2 in begun)
+    job[0] |= {"minutes": 5}
+    answer = answer_task(read_jobs(job)[0].task(), tmp_path, {})
+    assert answer.outcome == "incomplete"
+    assert "planning was stopped when the 5 min of 'minutes' were over" in answer.reason
+    document = json.loads(answer.files["plan.json"])
+    assert document["outcome"] == "cancelled" and [op["face"] for op in document["operations"]] == [1]
+    assert [op["passed"] for op in json.loads(answer.files["verdict.json"])["operations"]] == [True]
+    answer = answer_task(read_jobs(job)[0].task(), tmp_path, {})
+    assert (answer.outcome, answer.cause, answer.files) == ("failed", "timeout", {})
+    assert answer.reason == "no face was finished within the 5 min of 'minutes'"

@@ -79,7 +79,9 @@ def test_defaults_hold_for_all_jobs_and_files_are_meant_from_the_job_files_folde
     ("{scallop}\nregions=0", "sub-surfaces is 0"), ("{scallop}\norientations='few'", "orientations is 'few'"),
     ("{scallop}\nmachine='mill'", "machine 'mill' is neither"), ("{scallop}\noffset=[1,2,3]", "without a machine"),
     ("{scallop}\nlimits='sphere'", "limits 'sphere' are not understood"), ("{scallop}\nmethod='luck'", "luck"),
-    ("{scallop}\ntimeout=0", "timeout is 0: give a finite number above zero"), ("{scallop}\nmemory='2G'", "memory is"),
+    ("{scallop}\ntimeout=0", "timeout is 0: give a finite number above zero"),
+    ("{scallop}\nminutes=-5", "minutes is -5: give a finite number above zero"),
+    ("{scallop}\nmemory='2G'", "memory is"),
     ("{scallop}\nverify='yes'", "verify is 'yes': give true or false"), ("{scallop}\nname='../x'", "makes no folder"),
     ("{scallop}\nname='.work'", "makes no folder"), ("{scallop}\nobstacles=['no.step']", "no.step' does not exist"),
     ("{scallop}\n{scallop}", "jobs 1 and 2 are both called 'a'"),
@@ -150,7 +152,7 @@ def test_a_job_is_the_same_wherever_it_lies_and_another_one_with_every_other_set
     other = [{"part": here / "b.step"}, {"tool": "ball:6"}, {"scallop": 0.2}, {"faces": "1"}, {"regions": 2},
              {"stickout": 30}, {"obstacles": [here / "b.step"]}, {"machine": "mikron-ucp-710"}, {"verify": True},
              {"limits": "cone:0,0,1,45"}, {"feedrate": 500}, {"compare": True}, {"pictures": True},
-             {"tolerance": 0.005}, {"strategy": "sturz"}, rough, {**rough, "roughness": 0.8}]
+             {"tolerance": 0.005}, {"minutes": 5}, {"strategy": "sturz"}, rough, {**rough, "roughness": 0.8}]
     keys = [read_jobs([{**first, **change}])[0].key for change in same]
     assert len(set(keys)) == 1
     others = [read_jobs([{**first, **change}])[0].key for change in other]

@@ -214,8 +214,8 @@ def test_ctrl_c_twice_leaves_nothing(sheet: Path, tmp_path: Path) -> None:
 
 def test_a_plan_ends_when_its_minutes_are_over_and_keeps_finished_faces(sheet: Path, tmp_path: Path, capsys: Capture,
                                                                         monkeypatch: pytest.MonkeyPatch) -> None:
-    from toolaxis.cli.stopping import TimeLimit
     from toolaxis.job.planning.planner import PlanningJob
+    from toolaxis.progress import TimeLimit
 
     begun: list[int] = []
     plan_one = PlanningJob._operation

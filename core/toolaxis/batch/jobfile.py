@@ -39,8 +39,9 @@ _INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_
 #: What is written among the tolerances of a plan.
 _OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
-_OWN = {"compare": bool, "verify": bool, "pictures": bool, "timeout": float, "memory": float,
+_OWN = {"compare": bool, "verify": bool, "pictures": bool, "minutes": float, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
+_ABOVE_ZERO = ("minutes", "timeout", "memory")
 #: What tools have of their own, or goes by how many there are, unless a job says it.
 _OF_TOOL = ("objective", "feedrate", "spindle")
 #: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
@@ -64,8 +65,8 @@ class CheckedJob:
     bodies : tuple
         The part, then the obstacles: paths, or what `toolaxis.load` made of objects.
     own : dict
-        compare, strategy, roughness (micrometres, or None), verify, pictures, timeout and memory; objective, feedrate
-        and spindle where they are given, else None: tools of a rack have rates of their own.
+        compare, strategy, roughness (micrometres, or None), verify, pictures, minutes, timeout and memory; objective,
+        feedrate and spindle where they are given, else None: tools of a rack have rates of their own.
     key : str
         SHA-256 of all that the plan depends on: the same for the same plan, another one for another.
     """
@@ -96,7 +97,8 @@ class CheckedJob:
                    "strategy": self.own["strategy"], "roughness": _in_mm(self.own["roughness"]),
                    **{name: self.own[name] for name in _OF_TOOL}}
         return BatchTask(self.name, self.key, part, tuple(obstacles), self.tools, self.machine, options,
-                         self.own["verify"], self.own["pictures"], self.own["timeout"], self.own["memory"], __version__)
+                         self.own["verify"], self.own["pictures"], self.own["minutes"], self.own["timeout"],
+                         self.own["memory"], __version__)
 
 
 def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[CheckedJob, ...]:
@@ -193,8 +195,8 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
                 **{name: values[name] for name in _ASKED if name in values})
     tools = _tools(named, "tools" in row, spec)
     _check_rest(spec, machine)
-    own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "timeout": None, "memory": None,
-           "strategy": INDEXED, "roughness": None,
+    own: dict[str, Any] = {"compare": False, "verify": False, "pictures": False, "minutes": None, "timeout": None,
+           "memory": None, "strategy": INDEXED, "roughness": None,
            **{name: values[name] for name in _OWN if name in values}, **{name: values.get(name) for name in _OF_TOOL}}
     chosen = check_strategy(own["strategy"], Asked(
         tools[0], machine, spec.inputs.method, spec.inputs.objective, _in_mm(own["roughness"]), spec.orientations,
@@ -295,8 +297,9 @@ def _value(name: str, value: Any, kind: Any) -> Any:
     """A value of the kind that its key asks for; lists of numbers become the short forms of the command."""
     if kind is float:
         number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-        if not number or (name in ("timeout", "memory") and value <= 0):
-            raise InvalidInput(f"{name} is {value!r}: give a finite number{' above zero' if name in _OWN else ''}")
+        if not number or (name in _ABOVE_ZERO and value <= 0):
+            above = " above zero" if name in _ABOVE_ZERO else ""
+            raise InvalidInput(f"{name} is {value!r}: give a finite number{above}")
         return float(value)
     if kind == "count":
         return value
@@ -341,5 +344,5 @@ def _key(spec: Spec, tools: Sequence[Tool], machine: Machine | None, own: Mappin
              "machine": "" if machine is None else machine_to_toml(machine),
              "sources": [source.sha256 for source in sources], "version": __version__,
              **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")},
-             **({} if own["roughness"] is None else {"roughness": own["roughness"]})}
+             **{name: own[name] for name in ("roughness", "minutes") if own[name] is not None}}
     return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()

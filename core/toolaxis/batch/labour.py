@@ -24,6 +24,7 @@ from toolaxis.batch.task import BatchAnswer, BatchTask, PartBytes
 from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 from toolaxis.numeric.jit import compilations
 from toolaxis.plan.plan import Plan
+from toolaxis.progress import Progress, TimeLimit
 from toolaxis.shape.part import Part
 
 FULL = (ENOSPC, EDQUOT)
@@ -73,6 +74,8 @@ def _failure(reason: BaseException, task: BatchTask) -> tuple[str, str]:
     if isinstance(reason, OSError) and reason.errno in FULL:
         return "disk", f"{reason.strerror}: {reason.filename or 'temporary files'}"
     said = " ".join(str(reason).split())
+    if isinstance(reason, TimeoutError):
+        return "timeout", said
     if isinstance(reason, ToolAxisError):
         wrong = isinstance(reason, InvalidInput | UnsupportedGeometry | MissingBackend)
         return ("input" if wrong else "error"), said
@@ -90,7 +93,12 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
     part, *obstacles = (_part(source, scratch, known) for source in (task.part, *task.obstacles))
     if task.memory is not None:  # once the parts are read: what their kernel takes is looked at from outside
         resource.setrlimit(resource.RLIMIT_DATA, (int(task.memory * MEGABYTE),) * 2)
-    made = plan(part, task.tools, machine=task.machine, obstacles=obstacles or None, workers=1, **task.options)
+    progress = Progress(cancelled=TimeLimit(task.minutes).is_up)
+    made = plan(part, task.tools, machine=task.machine, obstacles=obstacles or None, workers=1, progress=progress,
+                **task.options)
+    out_of_time = made.outcome == "cancelled"
+    if out_of_time and not made.operations:
+        raise TimeoutError(f"no face was finished within the {task.minutes:g} min of 'minutes'")
     if made.operations and all(op.orientation.reasons[:1] and op.orientation.reasons[0].startswith(OUT_OF_MEMORY)
                                for op in made.operations):
         raise MemoryError  # nothing is lost with the plan, and the next run tries it again
@@ -99,6 +107,8 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
     document["part"]["source"] = task.part.name
     write_json(document, folder / PLAN)
     verdict, reasons = "", _reasons(made)
+    if out_of_time:
+        reasons.insert(0, f"planning was stopped when the {task.minutes:g} min of 'minutes' were over")
     if task.verify:
         judged = read_plan(folder)
         found = verify_plan(judged, threads=1)

@@ -49,6 +49,8 @@ class BatchTask:
         Keyword arguments of `toolaxis.plan`.
     verify, pictures : bool
         Whether the plan is judged, and drawn.
+    minutes : float or None
+        After which planning stops and what is finished is kept.
     timeout : float or None
         s that the job may take.
     memory : float or None
@@ -66,6 +68,7 @@ class BatchTask:
     options: dict[str, Any]
     verify: bool
     pictures: bool
+    minutes: float | None
     timeout: float | None
     memory: float | None
     version: str

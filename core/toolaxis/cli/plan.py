@@ -8,7 +8,7 @@ from pathlib import Path
 
 from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
-from toolaxis.cli.stopping import TimeLimit, writing
+from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput, JobError
 from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec, parse_allowances, parse_avoided
@@ -20,7 +20,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.plan.zone import AVOIDED
-from toolaxis.progress import Progress
+from toolaxis.progress import Progress, TimeLimit
 from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.shape.work_origin import format_margins, parse_margins
 from toolaxis.strategies.inputs import check_strategy

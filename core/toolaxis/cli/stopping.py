@@ -4,7 +4,6 @@ Some senders send twice: `timeout` signals the process and then its group, and a
 signals that follow closely are taken for the same one, and none interrupts the writing of what is finished.
 """
 
-import math
 import os
 import signal
 import time
@@ -12,8 +11,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
-
-from toolaxis.errors import InvalidInput
 
 #: For so long after the first signal others are taken for the same one, s.
 TOGETHER = 2.0
@@ -74,30 +71,6 @@ class StopSignals:
         _current = None
         for number, before in self._before.items():
             signal.signal(number, before)
-
-
-class TimeLimit:
-    """A time that begins when it is made.
-
-    Parameters
-    ----------
-    minutes : float or None
-        None for no limit.
-
-    Raises
-    ------
-    InvalidInput
-        When it is not above zero.
-    """
-
-    def __init__(self, minutes: float | None) -> None:
-        if minutes is not None and not minutes > 0:
-            raise InvalidInput(f"minutes is {minutes:g}: it must be above zero; leave --minutes out for no limit")
-        self._end = math.inf if minutes is None else time.monotonic() + 60 * minutes
-
-    def is_up(self) -> bool:
-        """Whether the time is over."""
-        return time.monotonic() > self._end
 
 
 #: Signals are the process's, and so is who hears them.
