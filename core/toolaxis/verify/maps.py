@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Declared = Callable[[Array, Array], NDArray[np.bool_]]
 
 #: Rays around which the worst is looked for more closely, rounds of that, and how much closer each looks.
-_STARTS, _ROUNDS, _SHRINK = 24, 5, 0.4
+_STARTS, _ROUNDS, _SHRINK = 8, 6, 0.4
 #: What a map has for every ray.
 _PER_RAY = ("uv", "point", "weight", "border", "remaining", "gouge", "cut_by", "gouged_by", "declared")
 
@@ -265,11 +265,11 @@ def _sharpen_worst(face: Face, rays: Rays, judge: Callable[[Array, Array], RestM
     what, value, by = coarse
     if value.max() <= 0:
         return None
-    rows = np.argsort(-value, kind="stable")[:_STARTS]
-    best = place_at(face, rays.uv[rows[0]], rays.point[rows[0]], (float(value[rows[0]]), int(by[rows[0]])))
-    starts, size = rays.uv[rows[value[rows] > 0]], rays.spacing
+    i = int(value.argmax())
+    best = place_at(face, rays.uv[i], rays.point[i], (float(value[i]), int(by[i])))
+    starts, size = _highest_apart(rays.uv, rays.point, value, rays.spacing), rays.spacing
     for _ in range(_ROUNDS):
-        uv = patch_around(face, starts, size)
+        uv = patch_around(face, starts, size) if len(starts) else starts
         if not len(uv):
             break
         point = face.evaluate(uv).point
@@ -278,9 +278,21 @@ def _sharpen_worst(face: Face, rays: Rays, judge: Callable[[Array, Array], RestM
         if aside is not None:
             height[aside(uv, point)] = -1.0
         index = left.cut_by if what == "remaining" else left.gouged_by
-        order = np.argsort(-height, kind="stable")
-        if height[order[0]] > best.value:
-            i = order[0]
+        i = int(height.argmax())
+        if height[i] > best.value:
             best = place_at(face, uv[i], point[i], (float(height[i]), int(index[i])))
-        starts, size = uv[order[:_STARTS]], size * _SHRINK
+        starts = _highest_apart(uv, point, height, size / 2)
+        size *= _SHRINK
     return best
+
+
+def _highest_apart(uv: Array, point: Array, height: Array, apart: float) -> Array:
+    """Parameters of the highest places above zero that lie apart, so that patches around them cover more, (k, 2)."""
+    order = np.argsort(-height, kind="stable")
+    order = order[height[order] > 0]
+    taken: list[int] = []
+    while len(order) and len(taken) < _STARTS:
+        taken.append(int(order[0]))
+        away = np.linalg.norm(point[order] - point[order[0]], axis=1)
+        order = order[away >= apart]
+    return uv[taken]
