@@ -176,6 +176,21 @@ def test_a_polygon_with_a_spike_divides_as_without_it(seed: int) -> None:
     assert len(cut_spikes(piece)) == 5 and len(cut_spikes(whole)) == 4
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_rests_side_by_side_divide_as_one(seed: int) -> None:
+    """Found: rests that larger tools had left shared borders; no smaller tool took a piece across these from them."""
+    rng = np.random.default_rng(seed)
+    inner, outer = divide_polygon((SQUARE,), (circle(*rng.uniform(1, 3, 2), rng.uniform(0.8, 2.5), 37),))
+    rests = (*inner, *outer)
+    piece = circle(*rng.uniform(1, 3, 2), rng.uniform(1.0, 2.5))
+    with pytest.raises(InvalidInput):
+        divide_polygon(rests, (piece,))
+    inside, outside = divide_nearly(rests, (piece,))
+    wanted = shapely.Polygon(piece).intersection(shapely.Polygon(SQUARE)).area
+    assert area(inside) == pytest.approx(wanted, rel=1e-5)
+    assert area(inside) + area(outside) == pytest.approx(16.0, rel=1e-9)
+
+
 def test_nothing_is_left_of_a_loop_that_only_goes_there_and_back() -> None:
     assert len(cut_spikes(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]]))) < 3
 
@@ -190,3 +205,4 @@ def test_borders_that_loops_share_cancel_out() -> None:
     odd = sum(inside(slabs((loop,)), places).astype(int) for loop in (SQUARE, beside, notch)) % 2 == 1
     assert (inside(slabs((joined,)), places) == odd).all()
     assert divide_polygon((joined,), (circle(4, 2, 1),))[0]
+    assert join_touching(()) == ()

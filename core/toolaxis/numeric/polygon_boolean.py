@@ -73,7 +73,8 @@ def divide_polygon(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
 def divide_nearly(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
     """A polygon divided by another one, which is moved by a millionth of its size where a corner lies on a border.
 
-    Where that is not enough, spikes without width are cut off both first: they cross a border twice in one place.
+    Where that is not enough, spikes without width are cut off both first, and edges that two loops of the polygon share
+    are taken out: they cross a border twice in one place.
 
     Parameters
     ----------
@@ -99,6 +100,7 @@ def divide_nearly(loops: Loops, by: Loops) -> tuple[Loops, Loops]:
         with suppress(InvalidInput):
             return divide_polygon(loops, tuple(loop + share * size * _ASLANT for loop in by))
     loops, by = (tuple(kept for loop in some if len(kept := cut_spikes(loop)) > 2) for some in (loops, by))
+    loops = join_touching(loops)
     for share in _MOVES[:-1]:
         with suppress(InvalidInput):
             return divide_polygon(loops, tuple(loop + share * size * _ASLANT for loop in by))
@@ -280,7 +282,7 @@ def join_touching(loops: Loops) -> Loops:
 
     **Properties**: 1. the same points lie inside an odd number of loops.
     """
-    return _single_edges(_with_corners(loops, loops))
+    return _single_edges(_with_corners(loops, loops)) if loops else ()
 
 
 def _not_in_both(loops: Loops, others: Loops) -> Loops:

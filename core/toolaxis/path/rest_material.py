@@ -13,7 +13,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.blocks import in_blocks
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.contours import contours
-from toolaxis.numeric.polygon_boolean import divide_nearly, divide_polygon, join_touching, without
+from toolaxis.numeric.polygon_boolean import divide_nearly, without
 from toolaxis.numeric.polygons import polygon_area
 from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.path.rest_grid import FINE, sample_again, sample_grid
@@ -41,7 +41,6 @@ _OF_RADIUS, _OF_STRIP, _OF_FACE = 1 / 14, 1 / 20, 1 / 200
 #: Share of what is machined that may lie in cells on the border of zones before these are made smaller, and how many
 #: there are along a side then at most: pieces as narrow as the ends of strips add up there.
 _ON_BORDER, _FINEST = 0.1, 6000
-_TRIES = 5
 #: Distances are told up to this, mm: only their signs are asked for.
 _FAR = 1e-3
 #: How much farther than its corners and the middles of its sides a cell may reach from its middle.
@@ -325,24 +324,15 @@ def _partition_by(some: Sequence[T], test: Callable[[T], bool]) -> tuple[list[T]
 
 
 def split(outline: tuple[Array, ...], loops: tuple[Array, ...]) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-    """What of an outline lies inside loops, and the rest; loops are moved by rounding where corners coincide.
-
-    Where that is not enough loops of the outline that touch are joined, and the others moved by a millionth of their
-    size.
+    """What of an outline lies inside loops, and the rest; loops are moved by a millionth of their size where corners
+    coincide.
 
     Parameters
     ----------
     outline, loops : tuple of (m, 2) arrays
     """
-    size = np.ptp(np.concatenate(outline), axis=0)
-    for attempt in range(_TRIES):
-        shift = attempt * 3e-10 * size * np.array([1.0, 0.61803398875])
-        try:
-            return divide_polygon(outline, tuple(loop + shift for loop in loops))
-        except InvalidInput:
-            continue
-    try:  # loops of an outline that touch each other are crossed twice in one place where they do
-        return divide_nearly(join_touching(outline), loops)
+    try:
+        return divide_nearly(outline, loops)
     except InvalidInput as reason:
         raise InvalidInput("zones cannot be cut out of the face: their borders coincide with its own") from reason
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toolaxis.numeric.polygon_boolean import join_touching
 from toolaxis.plan.operation import Operation
 from toolaxis.regions.tool_choice import AxisTime, ToolChain
 from toolaxis.shape.face import Face
@@ -110,7 +111,7 @@ def merge_waiting(some: Sequence[WaitingSurface]) -> list[WaitingSurface]:
         key = id(one.root), bool(one.left_by), tuple(alike.face.label for alike in one.copies)
         before = found.get(key)
         found[key] = one if before is None else replace(
-            one, loops=(*before.loops, *one.loops), left_by=before.left_by | one.left_by,
+            one, loops=join_touching((*before.loops, *one.loops)), left_by=before.left_by | one.left_by,
             in_pieces=before.in_pieces or one.in_pieces, axes=_axes_for_both(before.axes, one.axes))
     return list(found.values())
 
