@@ -34,6 +34,10 @@ class PartMisplaced(InvalidInput):
     """A machine cannot carry out a plan where its part stands on the table: another place there may help."""
 
 
+class AxisOutOfReach(InvalidInput):
+    """No position of a machine reaches an axis of a plan, wherever the part stands: a plan for that machine helps."""
+
+
 class UnsupportedGeometry(ToolAxisError):
     """The geometry is valid but of a kind that cannot be handled; the message names it and what to do."""
 

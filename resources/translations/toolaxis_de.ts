@@ -435,6 +435,10 @@
    <translation>Berechnen findet die Achsen.</translation>
   </message>
   <message>
+   <source>Plan again for {}</source>
+   <translation>Für {} neu planen</translation>
+  </message>
+  <message>
    <source>Raise the part by {}</source>
    <translation>Teil um {} höher setzen</translation>
   </message>
@@ -1176,6 +1180,10 @@
   <message>
    <source>Program</source>
    <translation>Programm</translation>
+  </message>
+  <message>
+   <source>Opens the planning panel with this machine and place on its table, and computes: axes, passes and collisions are then those of the machine.</source>
+   <translation>Öffnet das Planungsfenster mit dieser Maschine und diesem Platz auf ihrem Tisch und rechnet: Achsen, Bahnen und Kollisionen sind dann die der Maschine.</translation>
   </message>
   <message>
    <source>Sets the part higher on the table, in Z of its origin, and writes. It may help; only the new program tells.</source>

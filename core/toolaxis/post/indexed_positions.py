@@ -7,7 +7,7 @@ from math import degrees
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.errors import InvalidInput, PartMisplaced
+from toolaxis.errors import AxisOutOfReach, InvalidInput, PartMisplaced
 from toolaxis.machine.kinematics import nearest_turn, placement, rotary_angles
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import Mounting
@@ -177,12 +177,12 @@ def check_reach(op: Operation, mounting: Mounting) -> None:
 
     Raises
     ------
-    InvalidInput
+    AxisOutOfReach
     """
     axis = _fixed_axis_of(op)
     if not len(mounting.solutions(axis)):
         why = mounting.why(axis) or f"no position of {mounting.machine.name} reaches the axis"
-        raise InvalidInput(f"{op.name}: {why}; plan for this machine, or post for another")
+        raise AxisOutOfReach(f"{op.name}: {why}; plan for this machine, or post for another")
 
 
 def _solutions(op: Operation, mounting: Mounting) -> Array:

@@ -173,6 +173,42 @@ def test_the_machine_of_the_document_goes_along_with_the_raised_part(desk, opera
     assert form.offsetZ.value() == 33 and form.dialect.currentData() == "linuxcnc", "it was changed since"
 
 
+def test_a_plan_that_a_machine_refuses_is_made_again_for_it_by_a_click(desk, leaning, tmp_path):
+    """Found: axes beyond a machine's ranges were refused, and only typing led to a plan that it carries out."""
+    from freecad.toolaxis.document.inputs import inputs_of
+
+    other = leaning[1]
+    desk.gui.Selection.addSelection(other.Document.Name, other.Name)
+    form = export_panel(desk)
+    ready_for_linuxcnc(desk, form, tmp_path / "plan", 60)
+    written(desk, form)
+    assert not form.planAgain.isVisible(), form.message.text()
+    form.machine.setCurrentIndex(form.machine.findData("four-axis-a"))
+    written(desk, form)
+    assert "plan for this machine" in form.message.text() and not form.raisePart.isVisible()
+    assert form.planAgain.isVisible() and form.planAgain.text() == "Plan again for four-axis-a"
+    desk.shot("83-export-plan-again")
+    form.offsetZ.setValue(70)
+    assert not form.planAgain.isVisible(), "it was offered for another place"
+    form.offsetZ.setValue(60)
+    written(desk, form)
+    desk.press(form.planAgain)
+    desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the planning panel opens")
+    panel = desk.form("ToolAxisPlan")
+    assert desk.form("ToolAxisExport") is None and panel.limits.currentData() == "machine:four-axis-a@0,0,60"
+    desk.wait(lambda: panel.compute.isEnabled() and not panel.stop.isEnabled(), "the computation ends")
+    desk.press(desk.standard_button("Ok"))
+    desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
+    assert inputs_of(other).limits == "machine:four-axis-a@0,0,60" and other.Motions
+    desk.gui.Selection.clearSelection()
+    desk.gui.Selection.addSelection(other.Document.Name, other.Name)
+    form = export_panel(desk)
+    assert form.machine.currentData() == "four-axis-a" and form.offsetZ.value() == 60
+    form.dialect.setCurrentIndex(form.dialect.findData("linuxcnc"))
+    written(desk, form)
+    assert form.files.count() and not form.planAgain.isVisible(), form.message.text()
+
+
 def test_what_was_written_last_is_offered_again(desk, operation, tmp_path):
     document = operation.Document
     form = export_panel(desk)

@@ -48,7 +48,7 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
     ------
     InvalidInput
         When the dialect is not known, needs a machine, or cannot express the plan; `PartMisplaced` where another
-        place on the table may help.
+        place on the table may help, `AxisOutOfReach` where none does.
     """
     if dialect == APT:
         return {f"{op.name}.apt": operation_text(op, plan.inputs) for op in plan.operations if op.path is not None}

@@ -57,8 +57,8 @@ class Wish:
 class WriteOutcome(NamedTuple):
     """What came of writing.
 
-    names : of the files, none where the part stands in a wrong place on the machine's table;  refusal : what is wrong
-    with that, English;  height : by how much the part is to be raised there, mm, 0 where that does not help.
+    names : of the files, none where the machine cannot carry out the plan;  refusal : why not, English;  height : by
+    how much the part is to be raised on its table, mm, 0 where that does not help.
     """
 
     names: list
@@ -124,8 +124,8 @@ def task(operations, folder, wish=None):
     return compute
 
 
-def with_height(compute):
-    """The writing of operations that looks for a better place on the table where the machine cannot go.
+def with_remedy(compute):
+    """The writing of operations that looks for what helps where the machine cannot carry them out.
 
     Parameters
     ----------
@@ -139,12 +139,14 @@ def with_height(compute):
     """
 
     def compute_or_look(progress):
-        from toolaxis.errors import PartMisplaced
+        from toolaxis.errors import AxisOutOfReach, PartMisplaced
 
         try:
             return WriteOutcome(compute(progress))
         except PartMisplaced as reason:
             return WriteOutcome([], one_line(reason), reason.missing_height(progress))
+        except AxisOutOfReach as reason:
+            return WriteOutcome([], one_line(reason))
 
     return compute_or_look
 

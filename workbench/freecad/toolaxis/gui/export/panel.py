@@ -1,18 +1,22 @@
 """The task panel of Export: a folder, and what is written into it besides the plan."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
+from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kept_export import keep_export, kept_export
 from freecad.toolaxis.document.machine import machine_of, place_machine
-from freecad.toolaxis.document.machine_limits import available
+from freecad.toolaxis.document.machine_limits import available, read_text, text_of
+from freecad.toolaxis.gui.plan.panel import PlanPanel
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.gui.widgets.quantity import length_text
 from freecad.toolaxis.paths import RESOURCES
+from freecad.toolaxis.services import api
 from freecad.toolaxis.services.background import BackgroundWork, sentence
-from freecad.toolaxis.services.export import Wish, missing_for_report, task, with_height
+from freecad.toolaxis.services.export import Wish, missing_for_report, task, with_remedy
 from freecad.toolaxis.services.macros import list_of, record
 from freecad.toolaxis.services.messages import line_of, shown
 from PySide import QtWidgets
@@ -33,13 +37,14 @@ class ExportPanel(Panel):
         super().__init__(document, load_form("export"))
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "export.svg")))
         self.operations = list(operations)
-        self.lacking = 0.0
+        self.lacking, self.planned_for = 0.0, ""
         self._fill()
         form = self.form
         form.browse.clicked.connect(self._browse)
         form.write.clicked.connect(self.write)
         form.stop.clicked.connect(self.stop)
         form.raisePart.clicked.connect(self.raise_part)
+        form.planAgain.clicked.connect(self.plan_again)
         form.dialect.currentIndexChanged.connect(self._place_changed)
         form.machine.currentIndexChanged.connect(self._place_changed)
         for spin in self._spins:
@@ -116,7 +121,7 @@ class ExportPanel(Panel):
         if self.work is not None:
             return
         form.files.clear()
-        self.lacking = 0.0
+        self._offer_nothing()
         if not form.folder.text().strip():
             tell(form.message, translate("ToolAxis", "Give a folder."), bad=True)
             return
@@ -129,7 +134,7 @@ class ExportPanel(Panel):
         except Exception as reason:
             tell(form.message, sentence(reason), bad=True)
             return
-        self.work = BackgroundWork(with_height(compute))
+        self.work = BackgroundWork(with_remedy(compute))
         self.work.progressed.connect(lambda stage, share: self._progressed(stage, share))
         self.work.done.connect(lambda found: self._done(folder, wish, found))
         self.work.failed.connect(lambda text: self._ended(text, True))
@@ -154,10 +159,28 @@ class ExportPanel(Panel):
         self.form.offsetZ.setValue(after[2])
         self.write()
 
+    def plan_again(self):
+        """Plan what was to be written for the machine in the fields, in the planning panel, which computes at once."""
+        chosen = api.planned_with(self.operations[0])
+        inputs = replace(inputs_of(chosen), limits=self.planned_for)
+        name, offset = read_text(self.planned_for)
+        place_machine(self.document, name, tuple(offset), ())
+        self._open_instead(lambda: PlanPanel(self.document, inputs, chosen), PlanPanel.compute)
+
+    def _other_limits(self, wish):
+        """The limits with which a plan may be carried out that was refused; empty where it has them or is several."""
+        limits = text_of(wish.machine, wish.offset)
+        chosen = {api.planned_with(operation).Name for operation in self.operations}
+        known = all(inputs_of(operation).limits == limits for operation in self.operations)
+        return limits if wish.machine and len(chosen) == 1 and not known else ""
+
     def _place_changed(self, *_):
         """Another program, machine or place: what was offered for the one before is gone."""
-        self.lacking = 0.0
+        self._offer_nothing()
         self._show()
+
+    def _offer_nothing(self):
+        self.lacking, self.planned_for = 0.0, ""
 
     def _progressed(self, stage, share):
         self.form.progress.setMaximum(1000 if share >= 0 else 0)
@@ -167,6 +190,7 @@ class ExportPanel(Panel):
     def _done(self, folder, wish, found):
         if found.refusal:
             self.lacking = found.height
+            self.planned_for = "" if found.height > 0 else self._other_limits(wish)
             self._ended(shown(found.refusal), True)
             return
         names = found.names
@@ -187,6 +211,8 @@ class ExportPanel(Panel):
         form.write.setEnabled(not writing and bool(self.operations))
         form.raisePart.setText(translate("ToolAxis", "Raise the part by {}").format(length_text(self.lacking, 0)))
         form.raisePart.setVisible(not writing and self.lacking > 0 and bool(self.operations))
+        form.planAgain.setText(translate("ToolAxis", "Plan again for {}").format(form.machine.currentText()))
+        form.planAgain.setVisible(not writing and bool(self.planned_for) and bool(self.operations))
         form.files.setVisible(bool(form.files.count()))
         for widget in (form.machine, form.machineLabel, form.offsetLabel, *self._spins):
             widget.setVisible(bool(form.dialect.currentData()))

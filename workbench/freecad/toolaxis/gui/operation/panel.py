@@ -17,7 +17,6 @@ from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.panel import PlanPanel
 from freecad.toolaxis.gui.verify.panel import VerifyPanel
 from freecad.toolaxis.gui.widgets.fields import load_form, tell
-from freecad.toolaxis.gui.widgets.message_box import warn
 from freecad.toolaxis.gui.widgets.panel import Panel
 from freecad.toolaxis.paths import RESOURCES
 from freecad.toolaxis.services import api
@@ -190,26 +189,11 @@ class OperationPanel(Panel):
     def _plan_again(self):
         """Open the planning panel; it computes at once where what stands is stale."""
         chosen, stale = api.planned_with(self.operation), self.operation.Stale
-        self._open(lambda: PlanPanel(self.document, inputs_of(chosen), chosen), PlanPanel.compute if stale else None)
+        then = PlanPanel.compute if stale else None
+        self._open_instead(lambda: PlanPanel(self.document, inputs_of(chosen), chosen), then)
 
     def _verify(self):
-        self._open(lambda: VerifyPanel(self.document, [self.operation]))
-
-    def _open(self, make, then=None):
-        """Close this panel, open another one, and have it do something."""
-        self._close()
-        FreeCADGui.Control.closeDialog()
-
-        def show():
-            try:
-                panel = make()
-                FreeCADGui.Control.showDialog(panel)
-                if then is not None:
-                    then(panel)
-            except Exception as reason:
-                warn(sentence(reason))
-
-        QtCore.QTimer.singleShot(0, show)
+        self._open_instead(lambda: VerifyPanel(self.document, [self.operation]))
 
     def object_deleted(self, name):
         """The operation or its tool is about to be deleted: close the panel."""

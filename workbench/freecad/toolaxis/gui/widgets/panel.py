@@ -2,7 +2,8 @@
 
 import FreeCADGui
 from freecad.toolaxis.gui.widgets.document_observer import DocumentObserver
-from freecad.toolaxis.services.background import clear_for_window, note_window
+from freecad.toolaxis.gui.widgets.message_box import warn
+from freecad.toolaxis.services.background import clear_for_window, note_window, sentence
 from PySide import QtCore, QtWidgets
 
 
@@ -73,6 +74,30 @@ class Panel:
         self._leave()
         self.buttons = None
         self._let_go()
+
+    def _open_instead(self, make, then=None):
+        """Close this panel and open another one.
+
+        Parameters
+        ----------
+        make : callable
+            Makes it.
+        then : callable, optional
+            Takes it, once it is open.
+        """
+        self._close()
+        FreeCADGui.Control.closeDialog()
+
+        def show():
+            try:
+                panel = make()
+                FreeCADGui.Control.showDialog(panel)
+                if then is not None:
+                    then(panel)
+            except Exception as reason:
+                warn(sentence(reason))
+
+        QtCore.QTimer.singleShot(0, show)
 
     def _let_go(self):
         """Let go of what only this panel has."""
