@@ -142,4 +142,4 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
         return f"{LONGER_TOOL}, or another clamping: no tool here reaches it with any axis"
     if place.limited:
         return "more work: raise --limit"
-    return f"{LONGER_TOOL}, or another clamping: no axis that was tried reaches it"
+    return f"{LONGER_TOOL}, or another clamping: no axis that was tried reaches enough of it"

@@ -83,7 +83,8 @@ def by_reach(face: Face, whole: Operation, division: ReachDivision, others: tupl
         every = tuple(loop for loops in division.rest for loop in loops)
         part = face.trimmed(every, face.label + letters(len(targets)))
         pieces = f" in {len(division.rest)} places" if len(division.rest) > 1 else ""
-        words = f"none of the {division.tried} axes tried reaches {part.area:.1f} mm2{pieces} of face {face.label}"
+        words = (f"none of the {division.tried} axes tried reaches enough of {part.area:.1f} mm2{pieces} of face "
+                 f"{face.label} for a sub-surface of its own")
         none = Orientation(None, outcome="not_found", reasons=(words, *whole.orientation.reasons))
         targets.append(Target(part, ended=Operation(1, part, whole.tool, none)))
     return targets
