@@ -135,6 +135,20 @@ def test_what_takes_as_long_or_machines_less_is_not_taken(large_first: None, mon
     assert not may_take_less_time([replace(half, tool=slow.tool), half, half], [slow], [slow.tool], inputs)
 
 
+def test_what_was_given_up_with_other_tools_is_never_taken(large_first: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: what waited for smaller tools when planning with others ended was in no operation, and not open either."""
+    x, y = np.meshgrid(np.linspace(-12, 12, 41), np.linspace(-12, 12, 5), indexing="ij")
+    grooved = np.stack([x, y, 0.006 * (x**2 + y**2) - 0.8 * np.exp(-((x / 1.2) ** 2))], axis=-1)
+    part = Part.from_faces([ta.Face.from_bspline(grooved)])
+    tools = [ta.Tool.ball(8, feedrate=150.0), ta.Tool.ball(4, feedrate=2000.0), ta.Tool.ball(1, feedrate=2000.0)]
+    monkeypatch.setattr(rack, "may_take_less_time", lambda *_: False)
+    monkeypatch.setattr(rack, "takes_less_time", lambda *_: True)
+    plan = ta.plan(part, tools, 0.05, limits="cone:0,0,1,40", workers=1)
+    assert sum(op.face.area for op in plan.operations) == pytest.approx(part.faces[0].area, rel=1e-3)
+    assert plan.account.area == pytest.approx(part.faces[0].area, rel=1e-3)
+    assert plan.operations[0].tool.name == "ball:8" and ta.verify(plan).operations
+
+
 def test_a_choice_keeps_what_it_reckoned_for_each_face() -> None:
     face, small = bowl().face(1), ToolChain((1,), 20.0, 0.0)
     first = ReckonedTimes()

@@ -80,6 +80,8 @@ class RackPlanner:
     _steps: Counter[str] = field(default_factory=Counter)
     #: What the choice of tools said that faces take.
     _reckoned: ReckonedTimes = field(default_factory=ReckonedTimes)
+    #: Numbers of faces that no further tool was asked for, though something of them was left.
+    _given_up: set[int] = field(default_factory=set)
 
     def plan(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces.
@@ -112,14 +114,18 @@ class RackPlanner:
                         goes_on: Callable[[Face, int], bool] | None = None) -> bool:
         """Plan faces with the tools that are chosen for them; False where the user stopped it.
 
-        goes_on : takes a face and the number of a tool that is done with it, and tells whether others follow
+        goes_on : takes a face and the number of a tool that is done with it, and tells whether others follow; faces of
+        which something waits when it says no are given up, what was made of them is not the whole
         """
         self._begin(faces, progress)
         for tool, job in enumerate(self.jobs):
             if not self._with_tool_to_the_end(tool, progress.within(job.tool.shop_name)):
                 return False
             if goes_on is not None:
-                self._waiting = [one for one in self._waiting if goes_on(one.root, tool)]
+                for one in self._waiting:
+                    if not goes_on(one.root, tool):
+                        self._given_up |= {one.root.number, *(alike.face.number for alike in one.copies)}
+                self._waiting = [one for one in self._waiting if one.root.number not in self._given_up]
         return True
 
     def _begin(self, faces: Sequence[Face], progress: Progress) -> None:
@@ -430,6 +436,8 @@ class RackPlanner:
                 raise Cancelled("cancelled by the user")
             self._faults += other._faults
             for face in again:
+                if face.number in other._given_up:
+                    continue
                 own, rows = ([op for op in some if op.face.number == face.number] for some in (self._done, other._done))
                 elsewhere = tools_of(op for op in self._done if op.face.number != face.number)
                 if not any(op.failed for op in rows) and takes_less_time(rows, own, elsewhere, inputs):
