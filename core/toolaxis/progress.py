@@ -87,8 +87,6 @@ class Progress:
                         self.on_offer)
 
 
-NO_PROGRESS = Progress()
-
 class TimeLimit:
     """Minutes after which work is to stop, from when this is made: its `is_up` serves as `cancelled` of a `Progress`.
 
@@ -112,6 +110,8 @@ class TimeLimit:
         """Whether the time is over."""
         return time.monotonic() > self._end
 
+
+NO_PROGRESS = Progress()
 
 _HEARD: ContextVar[Progress] = ContextVar("toolaxis_progress", default=NO_PROGRESS)
 

@@ -41,6 +41,7 @@ _OF_TOLERANCE = {"least_lean": float}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "minutes": float, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
+#: What has to be above zero where it is given.
 _ABOVE_ZERO = ("minutes", "timeout", "memory")
 #: What tools have of their own, or goes by how many there are, unless a job says it.
 _OF_TOOL = ("objective", "feedrate", "spindle")

@@ -287,7 +287,8 @@ def _sharpen_worst(face: Face, rays: Rays, judge: Callable[[Array, Array], RestM
 
 
 def _highest_apart(uv: Array, point: Array, height: Array, apart: float) -> Array:
-    """Parameters of the highest places above zero that lie apart, so that patches around them cover more, (k, 2)."""
+    """Parameters of the highest places above zero, (k, 2), none nearer to another than `apart`, mm: so patches around
+    them cover more."""
     order = np.argsort(-height, kind="stable")
     order = order[height[order] > 0]
     taken: list[int] = []

@@ -114,8 +114,8 @@ class RackPlanner:
                         goes_on: Callable[[Face, int], bool] | None = None) -> bool:
         """Plan faces with the tools that are chosen for them; False where the user stopped it.
 
-        goes_on : takes a face and the number of a tool that is done with it, and tells whether others follow; faces of
-        which something waits when it says no are given up, what was made of them is not the whole
+        goes_on : takes a face and the number of a tool that is done with it, and tells whether others follow.  Where
+        it says no and something of a face still waits, the face is given up: its operations do not cover it
         """
         self._begin(faces, progress)
         for tool, job in enumerate(self.jobs):

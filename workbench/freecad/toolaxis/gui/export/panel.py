@@ -37,7 +37,7 @@ class ExportPanel(Panel):
         super().__init__(document, load_form("export"))
         self.form.setWindowIcon(FreeCADGui.getIcon(str(RESOURCES / "icons" / "export.svg")))
         self.operations = list(operations)
-        self.lacking, self.planned_for = 0.0, ""
+        self.lacking, self.limits_again = 0.0, ""
         self._fill()
         form = self.form
         form.browse.clicked.connect(self._browse)
@@ -162,13 +162,13 @@ class ExportPanel(Panel):
     def plan_again(self):
         """Plan what was to be written for the machine in the fields, in the planning panel, which computes at once."""
         chosen = api.planned_with(self.operations[0])
-        inputs = replace(inputs_of(chosen), limits=self.planned_for)
-        name, offset = read_text(self.planned_for)
+        inputs = replace(inputs_of(chosen), limits=self.limits_again)
+        name, offset = read_text(self.limits_again)
         place_machine(self.document, name, tuple(offset), ())
         self._open_instead(lambda: PlanPanel(self.document, inputs, chosen), PlanPanel.compute)
 
-    def _other_limits(self, wish):
-        """The limits with which a plan may be carried out that was refused; empty where it has them or is several."""
+    def _limits_to_plan_for(self, wish):
+        """Machine and place for which to plan again; empty where the plan was made for them, or plans are several."""
         limits = text_of(wish.machine, wish.offset)
         chosen = {api.planned_with(operation).Name for operation in self.operations}
         known = all(inputs_of(operation).limits == limits for operation in self.operations)
@@ -180,7 +180,7 @@ class ExportPanel(Panel):
         self._show()
 
     def _offer_nothing(self):
-        self.lacking, self.planned_for = 0.0, ""
+        self.lacking, self.limits_again = 0.0, ""
 
     def _progressed(self, stage, share):
         self.form.progress.setMaximum(1000 if share >= 0 else 0)
@@ -190,7 +190,7 @@ class ExportPanel(Panel):
     def _done(self, folder, wish, found):
         if found.refusal:
             self.lacking = found.height
-            self.planned_for = "" if found.height > 0 else self._other_limits(wish)
+            self.limits_again = "" if found.height > 0 else self._limits_to_plan_for(wish)
             self._ended(shown(found.refusal), True)
             return
         names = found.names
@@ -212,7 +212,7 @@ class ExportPanel(Panel):
         form.raisePart.setText(translate("ToolAxis", "Raise the part by {}").format(length_text(self.lacking, 0)))
         form.raisePart.setVisible(not writing and self.lacking > 0 and bool(self.operations))
         form.planAgain.setText(translate("ToolAxis", "Plan again for {}").format(form.machine.currentText()))
-        form.planAgain.setVisible(not writing and bool(self.planned_for) and bool(self.operations))
+        form.planAgain.setVisible(not writing and bool(self.limits_again) and bool(self.operations))
         form.files.setVisible(bool(form.files.count()))
         for widget in (form.machine, form.machineLabel, form.offsetLabel, *self._spins):
             widget.setVisible(bool(form.dialect.currentData()))
