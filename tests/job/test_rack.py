@@ -122,12 +122,21 @@ def test_a_hollow_that_no_tool_fits_asks_for_a_smaller_ball() -> None:
 
 def test_rests_wait_apart_from_what_no_tool_has_machined() -> None:
     """Found: a piece that no axis reached counted as the rest of its neighbour, and was missing in the part's area."""
-    root, loop = walled().faces[0], np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5]])
+    root, loop = walled().faces[0], np.array([[0.0, 0.0], [0.05, 0.0], [0.05, 0.05]])
     some = [WaitingSurface(root, (loop,), 1), WaitingSurface(root, (loop + 0.1,), 1, frozenset({0})),
             WaitingSurface(root, (loop + 0.2,), 1), WaitingSurface(root, (loop + 0.3,), 1, frozenset({2}))]
     plain, rest = merge_waiting(some)
     assert not plain.left_by and len(plain.loops) == 2
     assert rest.left_by == {0, 2} and len(rest.loops) == 2
+
+
+def test_rests_that_touch_wait_as_one() -> None:
+    """Found: borders that rests shared refused every division of them."""
+    root, loop = walled().faces[0], np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.4], [0.0, 0.4]])
+    rests = [WaitingSurface(root, (loop + np.array([0.5 * k, 0.0]),), 1, frozenset({k})) for k in range(2)]
+    (rest,) = merge_waiting(rests)
+    assert len(rest.loops) == 1 and rest.left_by == {0, 1}
+    assert rest.area == pytest.approx(sum(one.area for one in rests), rel=1e-9)
 
 
 def test_a_rest_on_which_the_program_fails_costs_no_other(planned: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
