@@ -39,6 +39,17 @@ def sphere(radius, concave=False):
     return Face.from_bspline(net, (2, 2), None, np.outer(weights, weights), flip=concave)
 
 
+def rod(radius):
+    """Three quarters of a thin rod along y, open below; feed u runs around it, crest at (0.5, v)."""
+    turn = np.radians(225 - 45 * np.arange(7))
+    reach = np.where(np.arange(7) % 2, 1 / SHARE, 1.0) * radius
+    net = np.stack([np.stack([reach * np.cos(turn), np.full(7, y), reach * np.sin(turn)], axis=1) for y in (0.0, 60.0)],
+                   axis=1)
+    weights = np.where(np.arange(7) % 2, SHARE, 1.0)
+    knots = (np.repeat([0.0, 1 / 3, 2 / 3, 1.0], [3, 2, 2, 3]), np.array([0.0, 0.0, 1.0, 1.0]))
+    return Face.from_bspline(net, (2, 1), knots, np.repeat(weights[:, None], 2, axis=1))
+
+
 def leaning(face, lean_deg, way_deg=0.0, feed="u", uv=CENTRE):
     return axis_from_lean(contact_frame(face, uv, feed), np.radians(lean_deg), np.radians(way_deg))
 
@@ -66,6 +77,24 @@ def swept_plane_width(tool, lean, h):
 PLANE_WIDTHS = [("torus:10x3", 20, 2.616177, 1.185783), ("torus:12x1", 5, 6.445430, 3.021934),
                 ("torus:12x1", 10, 4.749392, 2.171571), ("torus:12x1", 20, 3.489056, 1.576752),
                 ("torus:16x2", 10, 5.290774, 2.407950), ("ball:12", 20, 2.181742, 0.978979)]
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.3, 0.8])
+@pytest.mark.parametrize("name", ["ball:6", "tapered:2x1x3", "torus:10x3"])
+def test_what_the_cutter_does_not_touch_is_no_part_of_a_pass(radius, name):
+    """Found: around a thin edge a pass went on along the back of the blade, where the shank stands through it; strips
+    of 0.35 mm came out 3 mm wide."""
+    tool, h = Tool.parse(name), 0.02
+    for u in (0.5, 0.42):
+        place = [[u, 0.5]]
+        face = rod(radius)
+        normal = face.normal(np.array(place))[0]
+        # The section along the rod is straight, and the cutter nearest at the contact itself.
+        half = step_widths(face, tool, place, normal + np.array([0.0, 0.0, 0.3]), h, "u")[0] * 60.0
+        wanted = step_widths(plane(), tool, CENTRE, [0.0, 0.0, 1.0], h, "u")[0] * 60.0
+        if tool.flat_radius == 0.0:
+            assert half == pytest.approx(wanted, abs=1e-9)
+        assert (half <= 1.01 * wanted).all() and (half > 0.0).all()
 
 
 @pytest.mark.parametrize("name, lead, wide, narrow", PLANE_WIDTHS)

@@ -33,6 +33,7 @@ from toolaxis.contact.strip.newton import (
     solve_exit,
 )
 from toolaxis.contact.strip.second_order import Form, compliance, surface_form
+from toolaxis.contact.strip.swept_cutter import touches
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, cross, dot, plus
 
@@ -233,7 +234,7 @@ def half_widths(surface: OrientedSurface, cutter: CutterParameters, contacts: St
         for i in range(axes.shape[0]):
             row = axes[i, j if axes.shape[1] > 1 else 0]
             axis, width = (row[0], row[1], row[2]), work.guesses[i, 0]
-            if dot(axis, frame.normal) < cutter.sin - 1e-9:
+            if not touches(cutter, axis, frame.normal):
                 out[i, j] = 0.0
                 continue
             stride = _STRIDE * radius

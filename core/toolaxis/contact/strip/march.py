@@ -26,7 +26,7 @@ from toolaxis.contact.strip.curves import (
 )
 from toolaxis.contact.strip.cutter_parameters import CAP
 from toolaxis.contact.strip.newton import CutterSweep
-from toolaxis.contact.strip.swept_cutter import gap_rates, place_tip
+from toolaxis.contact.strip.swept_cutter import gap_rates, place_tip, touches
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, dot, plus
 
@@ -39,6 +39,8 @@ _SPACING = 1 / 6
 #: How far, as a share of that, tips may be off a smooth path, as at a crease of the surface, before they come closer
 #: together, and the closest that they come.
 _JUMP, _LEAST = 0.02, 1e-4
+#: How near tips come to where the cutter touches the surface no more, as a share of their distance.
+_RIM = 0.02
 #: Row of the contact among the tips.
 _MIDDLE = 96
 #: Where it is looked whether all up to a pole is covered, as a share of the last step: at the pole itself there is no
@@ -93,7 +95,8 @@ def _length(x: Triple, y: Triple) -> float:
 
 @jit_uncounted
 def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scratch) -> PassTips:
-    """Tips along the pass close to each other, both on the surface and along their own path."""
+    """Tips along the pass close to each other, both on the surface and along their own path, as far as the cutter
+    touches the surface: beyond its rim it would stand on the back."""
     curve, radius = sweep.feed.curve, sweep.cutter.flat + sweep.cutter.corner
     spacing = _SPACING * radius
     low = high = _MIDDLE
@@ -101,6 +104,13 @@ def sample_pass(sweep: CutterSweep, axis: Triple, tips: PassTips, scratch: Scrat
         w, row, step, last_w = 0.0, _MIDDLE, 0.0, 0.0
         while True:
             at = curve_point(sweep.surface, curve, w, scratch)
+            if row != _MIDDLE and not touches(sweep.cutter, axis, at.normal):
+                if abs(w - last_w) * sqrt(dot(at.tangent, at.tangent)) > _RIM * spacing:
+                    step *= 0.5
+                    w = last_w + step
+                    continue
+                row -= side
+                break
             tip = _tip_at(sweep, axis, at)
             speed, travel = sqrt(dot(at.tangent, at.tangent)), sqrt(dot(tip.rate, tip.rate))
             far = 0.0

@@ -34,6 +34,7 @@ from toolaxis.contact.strip.swept_cutter import (
     place_tip,
     relative_motion,
     signed_distance,
+    touches,
 )
 from toolaxis.numeric.jit import jit_uncounted_inline
 from toolaxis.numeric.triples import Triple, dot, plus
@@ -228,6 +229,7 @@ def solve_exit(sweep: CutterSweep, axis: Triple, guess: tuple[float, float], par
             s, w = s + move.ds, w + move.dw
             inside = nodes.w[feed.first] < w < nodes.w[feed.last]
             inside = inside and cross.nodes.w[cross.first] <= s <= cross.nodes.w[cross.last]
+            inside = inside and touches(cutter, axis, at.normal)
             return Exit(move.valid and move.leaving * guess[0] > 0.0 and inside, s, w, point)
         if exact > 0 and (exact > _EXACT or far_s > _FAR * radius):
             break
@@ -263,6 +265,7 @@ def is_first_exit(sweep: CutterSweep, axis: Triple, exit: Exit, tips: NodeTips) 
 def _recedes(sweep: CutterSweep, axis: Triple, point: Moving, tips: NodeTips, walk: tuple[int, int, int]) -> bool:
     """Whether the cutter goes away from a point from node to node, unless it is far off.
 
+    The walk ends where the cutter touches the surface no more.
     Where the normal passes by the axis the tip swings about the contact: there the walk goes in shorter steps.
     """
     cutter, nodes = sweep.cutter, sweep.feed.nodes
@@ -270,6 +273,8 @@ def _recedes(sweep: CutterSweep, axis: Triple, point: Moving, tips: NodeTips, wa
     start, end, side = walk
     last = 0.0
     for k in range(start, end + side, side):
+        if not touches(cutter, axis, read_moving(nodes.normal, k).point):
+            return True
         near = min(k, k - side)
         parts = 8 if k != start and tips.swings[near] else 1
         for part in range(1, parts + 1):

@@ -10,6 +10,8 @@ from toolaxis.numeric.triples import Triple, dot, plus
 
 #: Sine of the angle between axis and normal up to which the cutter stands upright.
 _UPRIGHT = 1e-12
+#: What the sine of the angle between axis and tangent plane may be short of the side line's.
+_TOUCHES = 1e-9
 #: Distances from the axis that count as zero, mm.
 _ON_AXIS = 1e-300
 
@@ -84,6 +86,12 @@ def signed_distance(cutter: CutterParameters, axis: Triple, apart: Triple) -> fl
     height = dot(apart, axis)
     across = plus(apart, axis, -height)
     return meridian_distance(cutter, sqrt(dot(across, across)), height)[0]
+
+
+@jit_uncounted_inline
+def touches(cutter: CutterParameters, axis: Triple, normal: Triple) -> bool:
+    """Whether the cutter's bottom or arc touches a surface that has a normal."""
+    return dot(axis, normal) >= cutter.sin - _TOUCHES
 
 
 @jit_uncounted_inline
