@@ -11,6 +11,7 @@ import pytest
 import toolaxis as ta
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput
 from toolaxis.job.planning.parallel import abreast, check_workers, how_it_ended
+from toolaxis.numeric.shares import free_cores
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress, breathe
 
 several = pytest.mark.skipif(check_workers(2) == 1, reason="processes are only forked on Linux")
@@ -38,6 +39,17 @@ def test_reports_reach_the_parent():
 
     abreast(_work, 4, 2, Progress(lambda *what: heard.append(what)))
     assert sorted(heard) == [(f"piece {k}", 1, 2) for k in range(4)]
+
+
+@several
+def test_the_last_process_has_the_cores_of_those_that_are_done():
+    def _work(index, _progress):
+        until = time.monotonic() + 20
+        while free_cores() != (2 if index == 2 else 1) and time.monotonic() < until:
+            time.sleep(0.01)
+        return free_cores()
+
+    assert list(abreast(_work, 3, 2, NO_PROGRESS).results.values()) == [1, 1, 2]
 
 
 @several

@@ -12,7 +12,7 @@ from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, rotation, unit
 from toolaxis.partition.uv_grid import Lattice
-from toolaxis.regions import reach_screen
+from toolaxis.regions import reach_kernel, reach_screen
 from toolaxis.regions.cells import FaceCells, screening_axes
 from toolaxis.regions.reach_kernel import ReachTips
 from toolaxis.regions.reach_screen import ReachScreen, screen_reach, seen_cells
@@ -278,8 +278,8 @@ def test_only_what_is_asked_for_is_answered_and_as_without_asking(scenes, monkey
     axes = screening_axes([cells])[::7]
     whole = screen_reach(cells, tools, axes, scene)
     asked = np.random.default_rng(4).random(whole.shape) < 0.5
-    looked, find = [], reach_screen.find_blocked
-    monkeypatch.setattr(reach_screen, "find_blocked", lambda *some: looked.append(len(some[2].place)) or find(*some))
+    looked, find = [], reach_kernel.find_blocked
+    monkeypatch.setattr(reach_kernel, "find_blocked", lambda *some: looked.append(len(some[2].place)) or find(*some))
     found = ReachScreen(cells, scene).screen(tools, axes, asked)
     assert np.array_equal(found, whole & asked) and (whole & ~asked).any()
     half = sum(looked)
@@ -317,13 +317,13 @@ def test_few_cells_are_screened_whole(scenes) -> None:
 
 def screen_without_balls(cells: FaceCells, tools: list[Tool], axes: np.ndarray, scene: ReachScene) -> np.ndarray:
     """What the screen says where no ball at a contact tells anything."""
-    find = reach_screen.find_blocked
+    find = reach_kernel.find_blocked
 
     def find_without(tree, tool, known, room, blocked) -> None:
         find(tree, tool, ReachTips.of(known.place, known.axis), room, blocked)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reach_screen, "find_blocked", find_without)
+        patch.setattr(reach_kernel, "find_blocked", find_without)
         return screen_reach(cells, tools, axes, scene)
 
 

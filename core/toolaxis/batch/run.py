@@ -1,6 +1,5 @@
 """Many parts in a batch: local processes or a cluster, resumed where it was stopped."""
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from toolaxis.batch.summary import JobRow
 from toolaxis.batch.task import BatchAnswer, BatchTask
 from toolaxis.errors import Cancelled, InvalidInput, JobError
 from toolaxis.job.planning.parallel import check_workers
+from toolaxis.numeric.shares import count_cores
 from toolaxis.progress import NO_PROGRESS, Progress
 
 
@@ -109,9 +109,7 @@ def _count(workers: int | None, scheduler: str | None) -> int:
     check_workers(workers)
     if scheduler is not None and workers is not None:
         raise InvalidInput("the workers of a cluster are its own: give either a scheduler or a number of workers")
-    if workers is not None:
-        return workers
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return count_cores() if workers is None else workers
 
 
 class _Run:

@@ -4,7 +4,6 @@ Whichever of the two comes to a kernel first compiles it; the other one waits an
 kernel is not on disk, so kernels that share much, as those of the search do, are left to one process.
 """
 
-import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -15,16 +14,12 @@ from numpy.typing import NDArray
 
 from toolaxis.contact.strip.half_widths import half_widths
 from toolaxis.numeric.jit import is_kept
+from toolaxis.numeric.shares import count_cores
 
 #: Control points along either edge of the small face that is planned, the length of the edge, and the scallop, mm.
 _POINTS, _EDGE, _SCALLOP = 5, 20.0, 0.1
 #: What it is trimmed by, in its parameters.
 _SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-
-
-def count_cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager

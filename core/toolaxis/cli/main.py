@@ -193,7 +193,7 @@ def _add_search_options(sub: _Parser) -> None:
 
 def _add_other_options(sub: _Parser) -> None:
     """Processes, rates, what is written, and moving axes."""
-    sub.add_argument("--workers", type=int, metavar="N", help="processes to plan and draw with; all cores unless given")
+    sub.add_argument("--workers", type=int, metavar="N", help="cores to plan and draw with; all of them unless given")
     sub.add_argument("--feedrate", type=float, metavar="MM/MIN",
                      help="for all tools (default: each tool's own, else 1000)")
     sub.add_argument("--rapid", type=float, default=10000.0, metavar="MM/MIN",
@@ -222,7 +222,7 @@ def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--workers", type=int, metavar="N",
-                     help="processes to judge and draw with; all cores unless given")
+                     help="cores to judge and draw with; all of them unless given")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.verify")
 

@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.triples import Triple, dot
+from toolaxis.progress import breathe
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
@@ -39,6 +41,8 @@ _CLEAR, _TOO_NEAR, _OPEN = 0, 1, 2
 _NO_AXIS = 1e-9
 """Distance from the tool's axis below which there is no direction away from it, mm."""
 _ROUNDING = 1e-6
+#: Tips of a share.
+_AT_ONCE = 512
 """What is added to distances between tips, mm."""
 
 
@@ -562,3 +566,22 @@ def find_blocked(tree: ReachTree, tool: ReachTool, tips: ReachTips, room: ReachR
                 last = _blocker(tree, tool, _row_of(tips.place, i), _row_of(tips.axis, i), clear, room, (found, last))
             blocked[i] = found < 0 or (found > 0 and last >= 0)
         first = end
+
+
+def find_blocked_tips(tree: ReachTree, tool: ReachTool, tips: ReachTips) -> Bools:
+    """Whether the tool comes nearer to a face than it may at n tips, (n,).
+
+    Parameters
+    ----------
+    tree : ReachTree
+    tool : ReachTool
+    tips : ReachTips
+    """
+    blocked = np.zeros(len(tips.place), dtype=bool)
+
+    def _find(room: ReachRoom, some: slice) -> None:
+        find_blocked(tree, tool, tips.pick(some), room, blocked[some])
+
+    for _ in share_out(_find, ReachRoom.make, len(blocked), _AT_ONCE):
+        breathe()
+    return blocked

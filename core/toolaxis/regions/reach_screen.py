@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.contact.placement import tips
 from toolaxis.numeric.vectors import angle_between, as_rows, unit
-from toolaxis.progress import breathe
 from toolaxis.regions.cells import FaceCells
-from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTips, ReachTool, find_blocked
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachTips, ReachTool, find_blocked_tips
 from toolaxis.regions.scene import ReachScene
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
@@ -22,8 +21,6 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 
-#: Tips between two moments to stop.
-_AT_ONCE = 4096
 #: Cells along the sides of the blocks that are looked at together.
 _BLOCK = 4
 #: Axes under which a tool reaches less than this share of what it reaches under the best one are passed over where
@@ -110,7 +107,7 @@ class ReachScreen:
         for first in range(0, len(whole.pieces), MOST_PIECES):
             rest = np.flatnonzero(~blocked)
             some = whole._replace(pieces=np.ascontiguousarray(whole.pieces[first:first + MOST_PIECES]))
-            blocked[rest] = _find(scene, some, asked.pick(rest))
+            blocked[rest] = find_blocked_tips(scene.tree, some, asked.pick(rest))
         return blocked
 
     @property
@@ -240,7 +237,7 @@ def _ball_fits(cells: FaceCells, radius: float, scene: ReachScene, required: Arr
         return np.ones(len(cells), dtype=bool)
     ball = np.array([[0.0, radius, 1.0, 0.0, 0.0, _HALF * radius, radius, 0.0]])
     places = cells.point + scene.allowance * cells.normal
-    return ~_find(scene, ReachTool.of(ball, required), ReachTips.of(places, cells.normal))
+    return ~find_blocked_tips(scene.tree, ReachTool.of(ball, required), ReachTips.of(places, cells.normal))
 
 
 def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
@@ -249,12 +246,3 @@ def _side_by_side(cells: FaceCells, seen: Bools) -> tuple[Indices, Indices]:
     order = np.lexsort((column, row, column // _BLOCK, row // _BLOCK))
     axis, place = np.nonzero(seen[:, order])
     return axis, order[place]
-
-
-def _find(scene: ReachScene, tool: ReachTool, asked: ReachTips) -> Bools:
-    blocked, room = np.zeros(len(asked.place), dtype=bool), ReachRoom.make()
-    for first in range(0, len(blocked), _AT_ONCE):
-        breathe()
-        some = slice(first, first + _AT_ONCE)
-        find_blocked(scene.tree, tool, asked.pick(some), room, blocked[some])
-    return blocked

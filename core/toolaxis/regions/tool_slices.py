@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.progress import breathe
-from toolaxis.regions.reach_kernel import MOST_PIECES, ReachRoom, ReachTips, ReachTool, find_blocked
+from toolaxis.regions.reach_kernel import MOST_PIECES, ReachTips, ReachTool, find_blocked_tips
 from toolaxis.regions.scene import ReachScene
 
 Array = NDArray[np.float64]
@@ -17,7 +16,6 @@ Bools = NDArray[np.bool_]
 _SLICE, _LOWEST = 4.0, 2.0
 #: Pairs go together whose tools are off by distances, mm, from the least on, and angles that differ less than this.
 _ALIKE, _LEAST = 1.25, 1e-4
-_AT_ONCE = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +40,7 @@ class ToolSearch:
     """
 
     def __init__(self, scene: ReachScene) -> None:
-        self._scene, self._room = scene, ReachRoom.make()
+        self._scene = scene
 
     def blocked(self, slices: ToolSlices, turn: Array, off: Array, places: Array, axes: Array) -> Bools:
         """Whether a tool comes nearer to something than it may by more than it may be off.
@@ -67,16 +65,9 @@ class ToolSearch:
                 pieces[:, 7] = np.arange(len(pieces))
                 tool = ReachTool.of(pieces, np.ascontiguousarray(slices.required[:, some] - less[some]))
                 rest = rows[~blocked[rows]]
-                blocked[rest] = self._find(tool, places[rest], axes[rest])
+                blocked[rest] = find_blocked_tips(self._scene.tree, tool, ReachTips.of(places[rest], axes[rest]))
         return blocked
 
-    def _find(self, tool: ReachTool, places: Array, axes: Array) -> Bools:
-        found = np.zeros(len(places), dtype=bool)
-        for first in range(0, len(places), _AT_ONCE):
-            breathe()
-            some = slice(first, first + _AT_ONCE)
-            find_blocked(self._scene.tree, tool, ReachTips.of(places[some], axes[some]), self._room, found[some])
-        return found
 
 
 def take_off(whole: ReachTool, radius: float) -> ReachTool:

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import polygon_area, stations, walk
+from toolaxis.numeric.shares import share_out
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
@@ -37,6 +38,8 @@ _RISE = 0.04
 _BAND = 2.0
 #: Parts of the range at whose ends nothing about the surface is smooth.
 _PARTS = 12
+#: Places of a share.
+_AT_ONCE = 512
 
 
 class HiddenPart(NamedTuple):
@@ -169,9 +172,14 @@ class ViewSurface(NurbsSurface):
         places = np.ascontiguousarray(uv, dtype=float).reshape(-1, 2)
         if self._view.table is None:
             return self._evaluate_plainly(places)
+        out, view, band = np.empty((len(places), 6, 3)), self._view.table, self._continuation.table
+
+        def _evaluate(_: None, some: slice) -> None:
+            evaluate_view(view, band, self.data, places[some], out[some])
+
         breathe()
-        out = np.empty((len(places), 6, 3))
-        evaluate_view(self._view.table, self._continuation.table, self.data, places, out)
+        for _ in share_out(_evaluate, lambda: None, len(places), _AT_ONCE):
+            breathe()
         return Derivatives(*(out[:, k] for k in range(6)))
 
     def _evaluate_plainly(self, places: Array) -> Derivatives:

@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit, jit_inline
+from toolaxis.numeric.shares import share_out
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.shape.face import Face
 from toolaxis.verify.component_clearance_numpy import clear_numpy
 from toolaxis.verify.linear_motions import Hierarchy, Tile, Tiles, floors, near_groups
 from toolaxis.verify.revolved_solids import reach_of
 from toolaxis.verify.sample_cells import SampleCells, ball_around, face_cells, merge_cells, share_cells, split
-from toolaxis.verify.spatial_blocks import Blocks, blocks_of, in_chunks
+from toolaxis.verify.spatial_blocks import CHUNK, Blocks, blocks_of
 from toolaxis.verify.swept_solid import LOOK, gradient, least_over_motion, moment, sway
 
 Array = NDArray[np.float64]
@@ -265,11 +266,13 @@ class _Search:
         which = np.argsort(least, kind="stable")  # the nearest first: with their distance most others are passed over
         kernel = _clear if _compiled.available else clear_numpy
 
-        def work(part: tuple[int, int]) -> None:
+        def _work(_: None, part: slice) -> None:
             best = min(self.best.distance, float(out[0][out[3]].min(initial=np.inf)))
-            kernel(body, tables, (blocks.ball, blocks.first, which), out, (best, margin, *part))
+            kernel(body, tables, (blocks.ball, blocks.first, which), out, (best, margin, part.start, part.stop))
 
-        in_chunks(work, int((least <= self.best.distance + margin.max()).sum()), *self.workers)
+        count, (threads, report) = int((least <= self.best.distance + margin.max()).sum()), self.workers
+        for done in share_out(_work, lambda: None, count, CHUNK, threads):
+            report(done.stop, count)
 
     def first_look(self) -> SampleCells:
         """Cells of whole faces, the nearest faces first, as long as one may come nearer than what is known."""

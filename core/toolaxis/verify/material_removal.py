@@ -11,13 +11,14 @@ from toolaxis.cldata.toolpath import Motion
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit, jit_inline
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.tools.profile import Profile
 from toolaxis.verify.linear_motions import GROUP, Hierarchy, Tile, Tiles, floors, near_groups
 from toolaxis.verify.material_removal_numpy import remove_numpy
 from toolaxis.verify.revolved_solids import cutter_solid, reach_of
-from toolaxis.verify.spatial_blocks import balls, blocks_of, in_chunks
+from toolaxis.verify.spatial_blocks import CHUNK, balls, blocks_of
 from toolaxis.verify.swept_solid import LOOK, ROOT, first_entry, gradient, least_over_motion, moment, sway
 
 Array = NDArray[np.float64]
@@ -443,14 +444,15 @@ class Removal:
         body = (self._solid[0], (motions.start, motions.step, motions.axis, motions.turn))
         tables = RemovalTables(self._solid, tile.groups, np.isin(motions.kind, cutting), motions.arrival, tile.sway)
 
-        def work(part: tuple[int, int]) -> None:
+        def _work(_: None, part: slice) -> None:
             if _compiled.available:
-                _remove(body, tables, rays, out, part)
+                _remove(body, tables, rays, out, (part.start, part.stop))
             else:
-                some = (rays[0], rays[1][slice(*part)], rays[2][part[0]:part[1] + 1])
+                some = (rays[0], rays[1][part], rays[2][part.start:part.stop + 1])
                 remove_numpy(body, (tile.slack, tables.cutting, tables.arrival), some, out)
 
-        in_chunks(work, len(rays[1]), self._threads, self._report)
+        for done in share_out(_work, lambda: None, len(rays[1]), CHUNK, self._threads):
+            self._report(done.stop, len(rays[1]))
 
 
 def _nothing(count: int) -> Found:

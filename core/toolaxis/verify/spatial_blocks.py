@@ -1,7 +1,5 @@
 """Points in blocks: neighbours along a space-filling curve, with a ball around each block."""
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -100,40 +98,3 @@ def blocks_of(points: Array) -> Blocks:
     """
     order = curve_order(points)
     return Blocks(order, *balls(points[order]))
-
-
-def in_chunks(work: Callable[[tuple[int, int]], None], blocks: int, threads: int,
-              report: Callable[[float, float], None]) -> None:
-    """Work off blocks in chunks, which are the same whatever the number of threads.
-
-    The first chunk is done before there are threads: compiled kernels must not be loaded by two at a time (numba on
-    Python 3.14 then ends the process).
-
-    Parameters
-    ----------
-    work : callable
-        Called with the first block of a chunk and the one behind its last.
-    blocks : int
-        Number of blocks.
-    threads : int
-    report : callable
-        Called with the blocks done and the blocks in all; may raise to stop.
-    """
-    chunks = [(b, min(b + CHUNK, blocks)) for b in range(0, blocks, CHUNK)]
-    alone = chunks if threads <= 1 else chunks[:1]
-    for chunk in alone:
-        work(chunk)
-        report(chunk[1], blocks)
-    chunks = chunks[len(alone):]
-    if not chunks:
-        return
-    with ThreadPoolExecutor(threads) as pool:
-        jobs = [pool.submit(work, chunk) for chunk in chunks]
-        try:
-            for chunk, job in zip(chunks, jobs, strict=True):
-                job.result()
-                report(chunk[1], blocks)
-        except BaseException:
-            for job in jobs:
-                job.cancel()
-            raise

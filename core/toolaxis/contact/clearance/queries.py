@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.clearance.branch_and_bound import ToolData, descend_many, scratch
+from toolaxis.contact.clearance.branch_and_bound import Room, ToolData, descend_many, scratch
 from toolaxis.contact.clearance.branch_and_bound_numpy import descend_many_numpy
 from toolaxis.contact.clearance.relief import no_relief
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric import jit as _compiled
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
 from toolaxis.shape.bounding.bounding_tree import BoundingTree
@@ -152,15 +153,16 @@ def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array,
 def _descend_cells(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
     moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
-    room = scratch(cells.most_edges) if _compiled.available else None
     spend(_QUESTION)
-    for first in range(0, len(moves), _MOTIONS_AT_ONCE):
-        breathe()
-        some = slice(first, first + _MOTIONS_AT_ONCE)
-        if room is None:
-            values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
-        else:
+
+    def _descend(room: Room, some: slice) -> None:
+        if _compiled.available:
             descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
+        else:
+            values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
+
+    for some in share_out(_descend, lambda: scratch(cells.most_edges), len(moves), _MOTIONS_AT_ONCE):
+        breathe()
         spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
     return values, tags
 

@@ -9,6 +9,7 @@ from toolaxis.contact.strip.cutter_parameters import CutterParameters, parameter
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
 from toolaxis.tools.tool import Tool
@@ -21,6 +22,8 @@ _HALVINGS = 60
 _ROWS = 64
 #: Motions, groups of these, and points that follow each other are looked at together.
 _GROUP, _GROUPS, _TOGETHER = 16, 16, 24
+#: Points of a share: a multiple of those that are looked at together.
+_AT_ONCE = 480
 #: What rounding may take off the distance to a group of groups, mm.
 _ROUNDING = 1e-9
 
@@ -227,9 +230,13 @@ class SweptMotions(NamedTuple):
         p = as_rows(points, 3, "points")
         if not _compiled.available:
             return distance_to_removed_numpy(tool, self.axis, self.starts, self.ends, p, most)
-        out = np.empty(len(p))
-        _least(parameters_of_tool(tool), self.wide, self.balls, self.moves, np.ascontiguousarray(p @ self.frame),
-               (float(least), float(most)), out)
+        out, cutter, places = np.empty(len(p)), parameters_of_tool(tool), np.ascontiguousarray(p @ self.frame)
+
+        def _measure(_: None, some: slice) -> None:
+            _least(cutter, self.wide, self.balls, self.moves, places[some], (float(least), float(most)), out[some])
+
+        for _ in share_out(_measure, lambda: None, len(p), _AT_ONCE):
+            pass
         return out
 
 

@@ -11,9 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.frame import Feed
 from toolaxis.contact.strip.curves import ALONG_U, ALONG_V, SECTION, OrientedSurface
 from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
-from toolaxis.contact.strip.half_widths import StripContacts, StripOptions, half_widths, new_workspace
+from toolaxis.contact.strip.half_widths import (
+    StripContacts,
+    StripOptions,
+    Workspace,
+    half_widths,
+    new_workspace,
+)
 from toolaxis.errors import InvalidInput
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
+from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.tools.tool import Tool
 from toolaxis.work import spend
@@ -23,6 +31,8 @@ Array = NDArray[np.float64]
 #: As many bounds of distances as take as long as the half widths of no contact, those of one in the step parameter and
 #: in a normal section, and one step of the march that finds them where Newton's method does not.
 _QUESTION, _CONTACT, _SECTION, _STEP = 500, 40, 280, 6
+#: Pairs of a contact and an axis of a share.
+_AT_ONCE = 64
 
 
 def kernel_inputs(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[OrientedSurface, CutterParameters]:
@@ -49,8 +59,19 @@ def take_half_widths(surface: OrientedSurface, cutter: CutterParameters, contact
     out = np.empty((len(axes), len(contacts.uv), 2))
     each = _SECTION if options.normal_section else _CONTACT
     spend(_QUESTION + each * out.shape[0] * out.shape[1])
-    work = new_workspace(len(axes))
-    spend(_STEP * half_widths(surface, cutter, contacts, np.array(axes, order="C"), options, work, out))
+
+    def _take(work: Workspace, some: slice) -> None:
+        rows = axes[:, some] if axes.shape[1] > 1 else axes
+        widths = np.empty((len(axes), some.stop - some.start, 2))
+        part = StripContacts(*(each[some] for each in contacts))
+        steps[some.start] = half_widths(surface, cutter, part, np.array(rows, order="C"), options, work, widths)
+        out[:, some] = widths
+
+    steps: dict[int, float] = {}
+    size = max(1, _AT_ONCE // len(axes))
+    for some in share_out(_take, lambda: new_workspace(len(axes)), len(contacts.uv), size):
+        breathe()
+        spend(_STEP * steps[some.start])
     return out
 
 

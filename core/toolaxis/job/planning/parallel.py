@@ -1,8 +1,9 @@
 """Independent pieces of work on several processes, with one progress and one stop for all."""
 
+import ctypes
 import faulthandler
+import mmap
 import multiprocessing
-import os
 import signal
 import sys
 import tempfile
@@ -17,6 +18,7 @@ from multiprocessing.process import BaseProcess
 from typing import IO, Generic, NamedTuple, TypeVar
 
 from toolaxis.errors import Cancelled, Fault, InvalidInput, fault, process_fault
+from toolaxis.numeric.shares import count_cores, use_cores
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 
 Result = TypeVar("Result")
@@ -65,7 +67,7 @@ def check_workers(workers: int | None) -> int:
     if not sys.platform.startswith("linux") or "FreeCAD" in sys.modules or multiprocessing.current_process().daemon \
             or threading.current_thread() is not threading.main_thread():
         return 1
-    return len(os.sched_getaffinity(0)) if workers is None else workers
+    return count_cores() if workers is None else workers
 
 
 def abreast(work: Callable[[int, Progress], Result], count: int, workers: int, progress: Progress) -> Outcome[Result]:
@@ -91,7 +93,7 @@ def abreast(work: Callable[[int, Progress], Result], count: int, workers: int, p
     if min(workers, count) > 1:
         crew = _Crew(work, progress, found, waiting)
         try:
-            crew.work(min(workers, count))
+            crew.work(workers)
         except Cancelled:
             crew.gather()
             return _in_order(found, True)
@@ -157,6 +159,9 @@ class _Crew(Generic[Result]):
                  waiting: deque[int]) -> None:
         self._work, self._progress, self._found, self._waiting = work, progress, found, waiting
         self._members: dict[Connection, _Member] = {}
+        self._workers = 0
+        #: How many of the processes are at work, for all of them to see.
+        self._busy = ctypes.c_int.from_buffer(mmap.mmap(-1, mmap.PAGESIZE))
         self._released: list[_Member] = []
 
     def work(self, workers: int) -> None:
@@ -165,13 +170,15 @@ class _Crew(Generic[Result]):
         Parameters
         ----------
         workers : int
+            Processes at most; they share as many cores.
 
         Raises
         ------
         Cancelled
             When the user asked to stop.
         """
-        self._fill(workers)
+        self._workers = workers
+        self._fill(min(workers, len(self._waiting)))
         while self._members:
             self._progress.check()
             for pipe in wait(list(self._members), _TICK):
@@ -181,8 +188,7 @@ class _Crew(Generic[Result]):
                 if pipe in self._members and self._waiting:
                     self._hand(pipe)
                 elif pipe in self._members:
-                    self._released.append(self._members.pop(pipe))
-                    pipe.close()
+                    self._release(pipe)
                 else:  # its process has died
                     self._fill(len(self._members) + 1)
 
@@ -192,8 +198,15 @@ class _Crew(Generic[Result]):
             for pipe in ready:
                 assert isinstance(pipe, Connection)
                 if self._take_message(pipe, NO_PROGRESS) and pipe in self._members:
-                    self._released.append(self._members.pop(pipe))
-                    pipe.close()
+                    self._release(pipe)
+
+    def _release(self, pipe: Connection) -> _Member:
+        """Let a process go that no piece is left for, or that has died."""
+        member = self._members.pop(pipe)
+        self._released.append(member)
+        self._busy.value = len(self._members)
+        pipe.close()
+        return member
 
     def _fill(self, workers: int) -> None:
         """Start processes for pieces that wait, until there are so many, or the system lets no more be started."""
@@ -209,7 +222,7 @@ class _Crew(Generic[Result]):
         with ExitStack() as stack:
             said = stack.enter_context(tempfile.TemporaryFile())
             ours, theirs = map(stack.enter_context, context.Pipe())
-            process = context.Process(target=_labour, args=(self._work, theirs, (*self._members, ours), said),
+            process = context.Process(target=_labour, args=(self._in_process, theirs, (*self._members, ours), said),
                                       daemon=True)
             # Until the child ignores them, signals to the group wait.
             before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
@@ -220,7 +233,13 @@ class _Crew(Generic[Result]):
             stack.pop_all()
         theirs.close()
         self._members[ours] = _Member(process, -1, said)
+        self._busy.value = len(self._members)
         return ours
+
+    def _in_process(self, index: int, progress: Progress) -> Result:
+        """Do a piece, on the cores that the other processes leave."""
+        with use_cores(self._workers, self._busy):
+            return self._work(index, progress)
 
     def _hand(self, pipe: Connection) -> None:
         """Give a process its next piece."""
@@ -234,13 +253,11 @@ class _Crew(Generic[Result]):
         try:
             kind, value = pipe.recv()
         except (EOFError, ConnectionResetError):
-            member = self._members.pop(pipe)
-            self._released.append(member)
+            member = self._release(pipe)
             member.process.join()
             member.said.seek(0)
             self._found.faults[member.piece] = process_fault(how_it_ended(member.process.exitcode),
                                                              member.said.read().decode(errors="replace"))
-            pipe.close()
             return True
         index = self._members[pipe].piece
         if kind == "report":

@@ -39,6 +39,7 @@ from toolaxis.job.planning.unreachable import with_unreachable
 from toolaxis.machine.limits import SHORT_FORMS, AxisLimits, format_limits
 from toolaxis.machine.machine import Machine
 from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
+from toolaxis.numeric.shares import use_cores
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.choices import FEEDRATE, ISO, SCALLOP, SPINDLE
 from toolaxis.plan.held_face import HeldFace
@@ -169,8 +170,8 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         counted, not timed: the plan is the same on every run.  An axis that moves is allowed `MOVING` times that; see
         `toolaxis.work`.
     workers : int, optional
-        Processes that plan sub-surfaces side by side, on Linux and outside FreeCAD; as many as there are cores unless
-        given. The result is the same for any number.
+        Cores to use, with as many processes that plan sub-surfaces side by side, on Linux and outside FreeCAD, and
+        threads where there are fewer of them; as many as there are unless given. The result is the same for any number.
     most_tools : int, optional
         Greatest number of tools that are used, where several are given.
     least_lean : float, optional
@@ -271,16 +272,18 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, datum_of(inputs, datum, loaded), regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     free, in_clamping = cut_faces(loaded, chosen_faces)
-    if len(rack.tools) > 1:
-        whole_part = None if pattern is None else replace(pattern, part=loaded)
-        jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=regions != 1) for tool in rack.tools]
-        made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
+    with use_cores(workers):
+        if len(rack.tools) > 1:
+            whole_part = None if pattern is None else replace(pattern, part=loaded)
+            jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=regions != 1)
+                    for tool in rack.tools]
+            made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
+        else:
+            untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
+            untouched = untouched and loaded.allowances is None
+            whole = faces is None and untouched and method in METHODS
+            made = _plan_part(job, free, (whole, compare), progress)
         return _tell_apart(_order_operations(made, progress), free, in_clamping)
-    untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
-    untouched = untouched and loaded.allowances is None
-    whole = faces is None and untouched and method in METHODS
-    made = _plan_part(job, free, (whole, compare), progress)
-    return _tell_apart(_order_operations(made, progress), free, in_clamping)
 
 
 def _tell(progress: Progress, stage: str) -> None:
