@@ -103,3 +103,15 @@ def test_processes_that_work_side_by_side_share_the_cores(monkeypatch) -> None:
         with use_cores(3):
             assert free_cores() == 3
     assert free_cores() == 6
+
+
+def test_what_is_shared_out_within_a_share_stays_in_its_thread() -> None:
+    inner = []
+
+    def work(_: None, some: slice) -> None:
+        here = threading.current_thread()
+        list(share_out(lambda _, part: inner.append(threading.current_thread() is here), lambda: None, 20, 1))
+
+    with use_cores(2):
+        list(share_out(work, lambda: None, 6, 1))
+    assert len(inner) == 120 and all(inner[20:])

@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import toolaxis as ta
 from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.job.inputs.tool_file import load_tool
+from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.job.planning.sub_surfaces import by_reach, shrink_refused
 from toolaxis.numeric.clipping import outer_with_holes
 from toolaxis.numeric.vectors import angle_between
@@ -51,6 +53,13 @@ def mushroom(plate, gap: float = 2.0) -> Part:
     return Part.from_faces([strip, *stem, lid])
 
 
+def cavity() -> Face:
+    """The inside of a vase, 31 mm deep and 26 mm wide, behind a neck of 14 mm."""
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 33), np.linspace(3, 34, 17), indexing="ij")
+    wide = CubicSpline([3, 12, 25, 34], [8, 13, 7, 11])(height)
+    return Face.from_bspline(np.stack([wide * np.cos(turn), wide * np.sin(turn), height], axis=-1), flip=True)
+
+
 def problem(part: Part, tool: str, number: int = 1) -> tuple[FaceProblem, ReachScene]:
     """What decides about axes for a face of a part."""
     return task(part.face(number), load_tool(tool), 0.05, part=part), ReachScene.of(part)
@@ -89,6 +98,15 @@ def test_a_narrow_ring_is_cut_into_few_strips_that_their_axes_reach(scenes) -> N
         assert strip.area > 0.1 * part.face(1).area
         free = own.reach(strip.grid(60, 60), piece.axis, itself=True)
         assert len(free) > 100 and free.mean() > 0.99
+
+
+def test_a_deep_cavity_takes_as_many_axes_as_it_needs() -> None:
+    part = Part.from_faces([cavity()])
+    slim = next(tool for tool in load_library(None).tools if tool.shop_name.startswith("Tapered ball D2"))
+    found = divide_by_reach(task(part.face(1), slim, 0.02, part=part), ReachScene.of(part))
+    areas, _ = areas_of(part.face(1), found)
+    assert sum(areas) > 0.95 * part.face(1).area
+    assert len({tuple(piece.axis) for piece in found.pieces}) > 12
 
 
 def test_a_face_that_no_axis_reaches_is_left_whole(scenes) -> None:

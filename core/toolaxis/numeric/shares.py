@@ -109,7 +109,8 @@ def share_out(work: Callable[[Room, slice], object], prepare: Callable[[], Room]
     def _work(some: slice) -> None:
         room = rooms.pop()
         try:
-            work(room, some)
+            with use_cores(1):  # what is shared out in there is this thread's own
+                work(room, some)
         finally:
             rooms.append(room)
 

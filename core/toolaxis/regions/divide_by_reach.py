@@ -44,7 +44,7 @@ _NEARER = tuple(np.radians([6.0, 3.0]))
 #: Angle by which axes are kept from the greatest one to a normal, rad, so that their neighbours serve too.
 _ROOM = np.radians(5)
 #: Sub-surfaces at most, and the share of the face that one must hold, and how many squares of the cutter's diameter.
-_PIECES, _WORTH, _SQUARES = 8, 0.015, 0.25
+_PIECES, _WORTH, _SQUARES = 24, 0.015, 0.25
 #: What a coarse cell at the edge of what an axis reaches counts beside others: finer ones may tell that it is beyond.
 _EDGE = 0.8
 #: Share of this least area that a further axis has to bring.

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.numeric.polygons import slabs, stations, walk
+from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows
 from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
@@ -24,8 +25,8 @@ Index = NDArray[np.int64]
 STARTS, STARTS_ALONG = 4, 2
 #: How far loops may leave the domain of a surface by rounding, as a share of its range; by how much bounds are rounded.
 _ROUNDED, _ROUNDED_UP = 1e-9, 1.0 + 1e-9
-#: Targets that are looked at before it is asked whether to stop.
-_AT_ONCE = 1024
+#: Targets of a share.
+_AT_ONCE = 256
 
 
 class NearestPoints(NamedTuple):
@@ -64,10 +65,12 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
     targets = np.ascontiguousarray(as_rows(points, 3, "point"))
     known = _samples_of(face, samples)
     uv, least = np.zeros((len(targets), 2)), np.full(len(targets), np.inf)
-    for first in range(0, len(targets), _AT_ONCE):
-        breathe()
-        rows = slice(first, first + _AT_ONCE)
+
+    def _find(_: None, rows: slice) -> None:
         _search(face, known, targets[rows], (uv[rows], least[rows]))
+
+    for _ in share_out(_find, lambda: None, len(targets), _AT_ONCE):
+        breathe()
     point = face.evaluate(uv).point
     return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
 

@@ -240,24 +240,12 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     else:
         inputs.check_tool(cutter)
     loaded = inputs.prepare_part(load(part))
-    asked, pattern = faces is not None, None
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:
         check_rack_inputs(RackInputs(method, chosen.moves, regions, orientations is not None, bool(given),
                                      compare))
-        if not asked:
-            _tell(progress, "looking for blades")
-            pattern = _find_blades(loaded, progress)
-            faces = "skins" if pattern is None else None
-    if pattern is not None:
-        loaded = pattern.part
-    _tell(progress, "joining faces")
-    # Layers are plane sections, to which iso-parametric lines do not matter.
-    loaded, numbers = with_joined(loaded, faces, pi if chosen.in_layers else GREATEST_CORNER,
-                                 _skin_width(rack), asked)
-    if chosen.in_layers:
-        loaded, numbers = with_rings(loaded, numbers)
+    loaded, numbers, pattern = _join_faces(loaded, faces, rack, chosen, progress)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
                                   *rack.warnings)
     if held:
@@ -279,11 +267,35 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
                     for tool in rack.tools]
             made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
         else:
-            untouched = not loaded.original and not loaded.selected and not loaded.avoided and not held
-            untouched = untouched and loaded.allowances is None
-            whole = faces is None and untouched and method in METHODS
+            whole = faces is None and _is_untouched(loaded) and method in METHODS
             made = _plan_part(job, free, (whole, compare), progress)
         return _tell_apart(_order_operations(made, progress), free, in_clamping)
+
+
+def _join_faces(part: Part, faces: Sequence[int | Sequence[int]] | str | None, rack: ToolLibrary, chosen: Strategy,
+                progress: Progress) -> tuple[Part, Any, Pattern | None]:
+    """A part with the faces joined that are machined as one, their numbers, and its blades where there are any.
+
+    Blades are looked for where several tools plan a part of which no faces are named; else it is joined to skins then.
+    """
+    asked, pattern = faces is not None, None
+    if len(rack.tools) > 1 and not asked:
+        _tell(progress, "looking for blades")
+        pattern = _find_blades(part, progress)
+        faces = "skins" if pattern is None else None
+    if pattern is not None:
+        part = pattern.part
+    _tell(progress, "joining faces")
+    # Layers are plane sections, to which iso-parametric lines do not matter.
+    joined, numbers = with_joined(part, faces, pi if chosen.in_layers else GREATEST_CORNER, _skin_width(rack), asked)
+    if chosen.in_layers:
+        joined, numbers = with_rings(joined, numbers)
+    return joined, numbers, pattern
+
+
+def _is_untouched(part: Part) -> bool:
+    """Whether a part is as it was read: nothing of it is joined, selected, avoided, held or left with an allowance."""
+    return not (part.original or part.selected or part.avoided or part.held) and part.allowances is None
 
 
 def _tell(progress: Progress, stage: str) -> None:
@@ -378,7 +390,7 @@ def _skin_width(rack: ToolLibrary) -> float:
 
 def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     """The blades of a part; None where it has none, or they cannot be told apart."""
-    if part.original or part.selected or part.avoided or part.held or part.allowances:
+    if not _is_untouched(part):
         return None
     with activate_progress(progress), suppress(Exception):  # its faces are planned as those of any part then
         return find_pattern(part, progress)[0]
