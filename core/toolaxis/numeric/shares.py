@@ -11,15 +11,15 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Protocol
 
-Room = TypeVar("Room")
+from toolaxis.progress import breathe
 
 #: Fewer shares are not worth a thread.
 _FEWEST = 4
 
 
-class Counter(Protocol):
+class SharedNumber(Protocol):
     """A number in memory that several processes see."""
 
     value: int
@@ -30,7 +30,7 @@ class _Cores:
     """How many cores there are for all processes that share them, and how many of these processes are at work."""
 
     count: int
-    busy: Counter | None = None
+    busy: SharedNumber | None = None
 
 
 _CORES: ContextVar[_Cores | None] = ContextVar("cores", default=None)
@@ -42,14 +42,14 @@ def count_cores() -> int:
 
 
 @contextmanager
-def use_cores(count: int | None, busy: Counter | None = None) -> Iterator[None]:
+def use_cores(count: int | None, busy: SharedNumber | None = None) -> Iterator[None]:
     """Use so many cores until it is left, in this thread.
 
     Parameters
     ----------
     count : int or None
         None leaves it as it is: as many as this process may run on unless said otherwise.
-    busy : Counter, optional
+    busy : SharedNumber, optional
         How many processes share them at any moment; this one alone unless given.
     """
     if count is None:
@@ -70,8 +70,23 @@ def free_cores() -> int:
     return max(1, cores.count // max(1, 1 if cores.busy is None else cores.busy.value))
 
 
-def share_out(work: Callable[[Room, slice], object], prepare: Callable[[], Room], count: int, size: int,
-              threads: int | None = None) -> Iterator[slice]:
+def work_on_rows(work: Callable[[slice], object], count: int, size: int) -> None:
+    """Work on rows in shares to the end; between two shares the user may stop it.
+
+    Parameters
+    ----------
+    work, count, size
+        As for `share_out`.
+
+    Raises
+    ------
+    Cancelled
+    """
+    for _ in share_out(work, count, size):
+        breathe()
+
+
+def share_out(work: Callable[[slice], object], count: int, size: int, threads: int | None = None) -> Iterator[slice]:
     """Work on rows in shares, and hand on which are done, in their order.
 
     The first share is done before there are threads: compiled kernels must not be loaded by two at a time (numba on
@@ -80,9 +95,7 @@ def share_out(work: Callable[[Room, slice], object], prepare: Callable[[], Room]
     Parameters
     ----------
     work : callable
-        Takes a room and the rows of a share; what it makes of a share does not depend on others.
-    prepare : callable
-        Makes a room, what one thread works in.
+        Takes the rows of a share; what it makes of them does not depend on other shares.
     count, size : int
         Rows in all, and of a share.
     threads : int, optional
@@ -96,23 +109,17 @@ def share_out(work: Callable[[Room, slice], object], prepare: Callable[[], Room]
     shares = [slice(first, min(first + size, count)) for first in range(0, count, size)]
     if threads is None:
         threads = free_cores() if len(shares) >= _FEWEST else 1
-    rooms = [prepare()]
     alone = shares if threads <= 1 else shares[:1]
     for some in alone:
-        work(rooms[0], some)
+        work(some)
         yield some
     shares = shares[len(alone):]
     if not shares:
         return
-    rooms += [prepare() for _ in range(threads - 1)]
 
     def _work(some: slice) -> None:
-        room = rooms.pop()
-        try:
-            with use_cores(1):  # what is shared out in there is this thread's own
-                work(room, some)
-        finally:
-            rooms.append(room)
+        with use_cores(1):  # what is shared out in there is this thread's own
+            work(some)
 
     with ThreadPoolExecutor(threads) as pool:
         jobs = [pool.submit(_work, some) for some in shares]

@@ -43,8 +43,8 @@ _FILLED = 4
 _NEARER = tuple(np.radians([6.0, 3.0]))
 #: Angle by which axes are kept from the greatest one to a normal, rad, so that their neighbours serve too.
 _ROOM = np.radians(5)
-#: Sub-surfaces at most, and the share of the face that one must hold, and how many squares of the cutter's diameter.
-_PIECES, _WORTH, _SQUARES = 24, 0.015, 0.25
+#: Axes of a face at most, the share of it that a sub-surface must hold, and how many squares of the cutter's diameter.
+_MOST_AXES, _WORTH, _SQUARES = 24, 0.015, 0.25
 #: What a coarse cell at the edge of what an axis reaches counts beside others: finer ones may tell that it is beyond.
 _EDGE = 0.8
 #: Share of this least area that a further axis has to bring.
@@ -335,7 +335,7 @@ class _Cover:
             From which further ones are taken.
         """
         reach = self._reach
-        while len(numbers) < _PIECES:
+        while len(numbers) < _MOST_AXES:
             left = np.flatnonzero(reach.assign(numbers) < 0)
             if self._area[left].sum() < _PRICE * reach.least.piece:
                 break
@@ -372,7 +372,7 @@ class _Cover:
 
     def _extend(self, numbers: list[int]) -> list[int]:
         """Axes with further ones, as long as each is worth it."""
-        while len(numbers) < _PIECES:
+        while len(numbers) < _MOST_AXES:
             longer = [*numbers, self._next(numbers)]
             if self._worth(longer) <= self._worth(numbers):
                 break

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.numeric.jit import jit_uncounted, jit_uncounted_inline
-from toolaxis.numeric.shares import share_out
+from toolaxis.numeric.shares import work_on_rows
 from toolaxis.numeric.triples import Triple, dot
-from toolaxis.progress import breathe
 from toolaxis.tools.solid import piece_distance
 
 Array = NDArray[np.float64]
@@ -579,9 +578,8 @@ def find_blocked_tips(tree: ReachTree, tool: ReachTool, tips: ReachTips) -> Bool
     """
     blocked = np.zeros(len(tips.place), dtype=bool)
 
-    def _find(room: ReachRoom, some: slice) -> None:
-        find_blocked(tree, tool, tips.pick(some), room, blocked[some])
+    def _find(some: slice) -> None:
+        find_blocked(tree, tool, tips.pick(some), ReachRoom.make(), blocked[some])
 
-    for _ in share_out(_find, ReachRoom.make, len(blocked), _AT_ONCE):
-        breathe()
+    work_on_rows(_find, len(blocked), _AT_ONCE)
     return blocked

@@ -69,7 +69,6 @@ class ToolSearch:
         return blocked
 
 
-
 def take_off(whole: ReachTool, radius: float) -> ReachTool:
     """A tool with a smaller radius all along; what is no wider than that goes."""
     pieces = whole.pieces - np.array([radius, 0.0, 0.0, 0.0, 0.0, 0.0, radius, 0.0])

@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.bezier import bezier_nets, derivative_bounds
 from toolaxis.numeric.polygons import slabs, stations, walk
-from toolaxis.numeric.shares import share_out
+from toolaxis.numeric.shares import work_on_rows
 from toolaxis.numeric.vectors import as_rows
-from toolaxis.progress import breathe
 from toolaxis.shape.face import Face
 from toolaxis.shape.nearest_kernel import FaceLoop, FaceRange, nearest_along, nearest_inside
 from toolaxis.shape.nearest_numpy import nearest_along_numpy, nearest_inside_numpy
@@ -66,11 +65,10 @@ def nearest(face: Face, points: ArrayLike, samples: int = 48) -> NearestPoints:
     known = _samples_of(face, samples)
     uv, least = np.zeros((len(targets), 2)), np.full(len(targets), np.inf)
 
-    def _find(_: None, rows: slice) -> None:
+    def _find(rows: slice) -> None:
         _search(face, known, targets[rows], (uv[rows], least[rows]))
 
-    for _ in share_out(_find, lambda: None, len(targets), _AT_ONCE):
-        breathe()
+    work_on_rows(_find, len(targets), _AT_ONCE)
     point = face.evaluate(uv).point
     return NearestPoints(uv, point, np.linalg.norm(point - targets, axis=1))
 

@@ -12,8 +12,7 @@ from scipy.spatial import cKDTree
 
 from toolaxis.numeric.grids import grid_rows
 from toolaxis.numeric.polygons import polygon_area, stations, walk
-from toolaxis.numeric.shares import share_out
-from toolaxis.progress import breathe
+from toolaxis.numeric.shares import work_on_rows
 from toolaxis.shape.face import Face
 from toolaxis.shape.folds import TurningCells, find_turning_cells
 from toolaxis.shape.nurbs import NurbsSurface
@@ -174,12 +173,10 @@ class ViewSurface(NurbsSurface):
             return self._evaluate_plainly(places)
         out, view, band = np.empty((len(places), 6, 3)), self._view.table, self._continuation.table
 
-        def _evaluate(_: None, some: slice) -> None:
+        def _evaluate(some: slice) -> None:
             evaluate_view(view, band, self.data, places[some], out[some])
 
-        breathe()
-        for _ in share_out(_evaluate, lambda: None, len(places), _AT_ONCE):
-            breathe()
+        work_on_rows(_evaluate, len(places), _AT_ONCE)
         return Derivatives(*(out[:, k] for k in range(6)))
 
     def _evaluate_plainly(self, places: Array) -> Derivatives:

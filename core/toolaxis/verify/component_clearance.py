@@ -266,12 +266,12 @@ class _Search:
         which = np.argsort(least, kind="stable")  # the nearest first: with their distance most others are passed over
         kernel = _clear if _compiled.available else clear_numpy
 
-        def _work(_: None, part: slice) -> None:
+        def _work(part: slice) -> None:
             best = min(self.best.distance, float(out[0][out[3]].min(initial=np.inf)))
             kernel(body, tables, (blocks.ball, blocks.first, which), out, (best, margin, part.start, part.stop))
 
         count, (threads, report) = int((least <= self.best.distance + margin.max()).sum()), self.workers
-        for done in share_out(_work, lambda: None, count, CHUNK, threads):
+        for done in share_out(_work, count, CHUNK, threads):
             report(done.stop, count)
 
     def first_look(self) -> SampleCells:

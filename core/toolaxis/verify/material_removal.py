@@ -444,14 +444,14 @@ class Removal:
         body = (self._solid[0], (motions.start, motions.step, motions.axis, motions.turn))
         tables = RemovalTables(self._solid, tile.groups, np.isin(motions.kind, cutting), motions.arrival, tile.sway)
 
-        def _work(_: None, part: slice) -> None:
+        def _work(part: slice) -> None:
             if _compiled.available:
                 _remove(body, tables, rays, out, (part.start, part.stop))
             else:
                 some = (rays[0], rays[1][part], rays[2][part.start:part.stop + 1])
                 remove_numpy(body, (tile.slack, tables.cutting, tables.arrival), some, out)
 
-        for done in share_out(_work, lambda: None, len(rays[1]), CHUNK, self._threads):
+        for done in share_out(_work, len(rays[1]), CHUNK, self._threads):
             self._report(done.stop, len(rays[1]))
 
 

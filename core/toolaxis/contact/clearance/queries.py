@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toolaxis.contact.clearance.branch_and_bound import Room, ToolData, descend_many, scratch
+from toolaxis.contact.clearance.branch_and_bound import ToolData, descend_many, scratch
 from toolaxis.contact.clearance.branch_and_bound_numpy import descend_many_numpy
 from toolaxis.contact.clearance.relief import no_relief
 from toolaxis.errors import InvalidInput
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _PIECES_AT_ONCE = 60
-#: Motions between two moments to stop.
+#: Motions of a share.
 _MOTIONS_AT_ONCE = 256
 #: As many bounds as take as long as a question without any motion, and a motion without any bound.
 _QUESTION, _MOTION = 2000, 20
@@ -155,13 +155,14 @@ def _descend_cells(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Ar
     values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
     spend(_QUESTION)
 
-    def _descend(room: Room, some: slice) -> None:
+    def _descend(some: slice) -> None:
         if _compiled.available:
+            room = scratch(cells.most_edges)
             descend_many(cells.data, tool, (moves[some], cutoff), room, (values[some], tags[some]))
         else:
             values[some], tags[some] = descend_many_numpy(cells, tool, moves[some], cutoff)
 
-    for some in share_out(_descend, lambda: scratch(cells.most_edges), len(moves), _MOTIONS_AT_ONCE):
+    for some in share_out(_descend, len(moves), _MOTIONS_AT_ONCE):
         breathe()
         spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
     return values, tags

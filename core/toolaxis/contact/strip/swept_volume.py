@@ -9,7 +9,7 @@ from toolaxis.contact.strip.cutter_parameters import CutterParameters, parameter
 from toolaxis.contact.strip.swept_cutter import signed_distance
 from toolaxis.numeric import jit as _compiled
 from toolaxis.numeric.jit import jit
-from toolaxis.numeric.shares import share_out
+from toolaxis.numeric.shares import work_on_rows
 from toolaxis.numeric.vectors import as_rows, unit
 from toolaxis.tools.solid import piece_distance_numpy, solid_pieces
 from toolaxis.tools.tool import Tool
@@ -232,11 +232,10 @@ class SweptMotions(NamedTuple):
             return distance_to_removed_numpy(tool, self.axis, self.starts, self.ends, p, most)
         out, cutter, places = np.empty(len(p)), parameters_of_tool(tool), np.ascontiguousarray(p @ self.frame)
 
-        def _measure(_: None, some: slice) -> None:
+        def _measure(some: slice) -> None:
             _least(cutter, self.wide, self.balls, self.moves, places[some], (float(least), float(most)), out[some])
 
-        for _ in share_out(_measure, lambda: None, len(p), _AT_ONCE):
-            pass
+        work_on_rows(_measure, len(p), _AT_ONCE)
         return out
 
 

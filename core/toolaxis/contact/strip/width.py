@@ -11,13 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from toolaxis.contact.frame import Feed
 from toolaxis.contact.strip.curves import ALONG_U, ALONG_V, SECTION, OrientedSurface
 from toolaxis.contact.strip.cutter_parameters import CutterParameters, cutter_parameters
-from toolaxis.contact.strip.half_widths import (
-    StripContacts,
-    StripOptions,
-    Workspace,
-    half_widths,
-    new_workspace,
-)
+from toolaxis.contact.strip.half_widths import StripContacts, StripOptions, half_widths, new_workspace
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.shares import share_out
 from toolaxis.numeric.vectors import as_rows, axis_rows, unit
@@ -60,16 +54,16 @@ def take_half_widths(surface: OrientedSurface, cutter: CutterParameters, contact
     each = _SECTION if options.normal_section else _CONTACT
     spend(_QUESTION + each * out.shape[0] * out.shape[1])
 
-    def _take(work: Workspace, some: slice) -> None:
+    def _take(some: slice) -> None:
         rows = axes[:, some] if axes.shape[1] > 1 else axes
-        widths = np.empty((len(axes), some.stop - some.start, 2))
+        widths, work = np.empty((len(axes), some.stop - some.start, 2)), new_workspace(len(axes))
         part = StripContacts(*(each[some] for each in contacts))
         steps[some.start] = half_widths(surface, cutter, part, np.array(rows, order="C"), options, work, widths)
         out[:, some] = widths
 
     steps: dict[int, float] = {}
     size = max(1, _AT_ONCE // len(axes))
-    for some in share_out(_take, lambda: new_workspace(len(axes)), len(contacts.uv), size):
+    for some in share_out(_take, len(contacts.uv), size):
         breathe()
         spend(_STEP * steps[some.start])
     return out

@@ -91,9 +91,9 @@ def abreast(work: Callable[[int, Progress], Result], count: int, workers: int, p
     found: Outcome[Result] = Outcome({}, {}, False)
     waiting = deque(range(count))
     if min(workers, count) > 1:
-        crew = _Crew(work, progress, found, waiting)
+        crew = _Crew(work, workers, progress, found, waiting)
         try:
-            crew.work(workers)
+            crew.work()
         except Cancelled:
             crew.gather()
             return _in_order(found, True)
@@ -148,6 +148,8 @@ class _Crew(Generic[Result]):
     Parameters
     ----------
     work : callable
+    workers : int
+        Processes at most; they share as many cores.
     progress : Progress
     found : Outcome
         Receives what comes of the pieces.
@@ -155,30 +157,24 @@ class _Crew(Generic[Result]):
         Pieces that nobody has yet; those that remain when no process can be started stay in it.
     """
 
-    def __init__(self, work: Callable[[int, Progress], Result], progress: Progress, found: Outcome[Result],
-                 waiting: deque[int]) -> None:
+    def __init__(self, work: Callable[[int, Progress], Result], workers: int, progress: Progress,
+                 found: Outcome[Result], waiting: deque[int]) -> None:
         self._work, self._progress, self._found, self._waiting = work, progress, found, waiting
         self._members: dict[Connection, _Member] = {}
-        self._workers = 0
+        self._workers = workers
         #: How many of the processes are at work, for all of them to see.
         self._busy = ctypes.c_int.from_buffer(mmap.mmap(-1, mmap.PAGESIZE))
         self._released: list[_Member] = []
 
-    def work(self, workers: int) -> None:
+    def work(self) -> None:
         """Have all pieces done.
-
-        Parameters
-        ----------
-        workers : int
-            Processes at most; they share as many cores.
 
         Raises
         ------
         Cancelled
             When the user asked to stop.
         """
-        self._workers = workers
-        self._fill(min(workers, len(self._waiting)))
+        self._fill(min(self._workers, len(self._waiting)))
         while self._members:
             self._progress.check()
             for pipe in wait(list(self._members), _TICK):
@@ -222,7 +218,7 @@ class _Crew(Generic[Result]):
         with ExitStack() as stack:
             said = stack.enter_context(tempfile.TemporaryFile())
             ours, theirs = map(stack.enter_context, context.Pipe())
-            process = context.Process(target=_labour, args=(self._in_process, theirs, (*self._members, ours), said),
+            process = context.Process(target=_labour, args=(self._do_piece, theirs, (*self._members, ours), said),
                                       daemon=True)
             # Until the child ignores them, signals to the group wait.
             before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
@@ -236,7 +232,7 @@ class _Crew(Generic[Result]):
         self._busy.value = len(self._members)
         return ours
 
-    def _in_process(self, index: int, progress: Progress) -> Result:
+    def _do_piece(self, index: int, progress: Progress) -> Result:
         """Do a piece, on the cores that the other processes leave."""
         with use_cores(self._workers, self._busy):
             return self._work(index, progress)
