@@ -66,6 +66,27 @@ def test_the_length_of_a_fillet_is_no_bend() -> None:
     assert bounds[..., 1:].max() <= 1e-12
 
 
+def test_one_patch_with_other_weights_does_not_make_a_bend_of_the_length_of_the_next() -> None:
+    """A joined face: a fillet along a wall of 192 mm, then a corner whose weights rounding has moved off a product."""
+    rounding = 1.0 + 1e-11
+    across = np.array([WEIGHTS, WEIGHTS, WEIGHTS, WEIGHTS, WEIGHTS]).T
+    turn = np.array([1.0, 1.0, 1.0, np.sqrt(0.5), 1.0])
+    weights = across * turn
+    weights[1, 3] *= rounding
+    along = np.array([(-96.0, 60.0), (0.0, 60.0), (96.0, 60.0), (100.0, 60.0), (100.0, 56.0)])
+    inwards = np.array([(0.0, -0.3), (0.0, -0.3), (0.0, -0.3), (-0.3, -0.3), (-0.3, 0.0)])
+    points = np.array([[[*(place + (1.0 - x) * into), 0.3 * z] for place, into in zip(along, inwards, strict=True)]
+                       for x, z in ARC])
+    face = Face.from_bspline(points, (2, 2), [np.array([0.0, 0, 0, 1, 1, 1]), np.array([0.0, 0, 0, 1, 1, 2, 2, 2])],
+                             weights=weights)
+    lines = np.linspace(0, 1, 5), np.array([0.0, 1.0, 2.0])
+    bounds = derivative_bounds(bezier_nets(face.surface.data, *lines), np.diff(lines[0]), np.diff(lines[1]), 2)
+    d = face.evaluate(face.grid(40, 40))
+    assert bounds[:, 0, 0].max() <= 3 * np.linalg.norm(d.suu, axis=1).max()
+    for k, own_values in enumerate((d.suu, d.suv, d.svv)):
+        assert np.linalg.norm(own_values, axis=1).max() <= bounds[..., k].max()
+
+
 def test_weights_that_are_no_products_have_bounds_too() -> None:
     weights = np.outer(WEIGHTS, WEIGHTS)
     weights[1, 1] = 1.3

@@ -83,8 +83,9 @@ def _peak(net: Array) -> Array:
     return np.asarray(size.max(axis=(2, 3)))
 
 
-#: How far weights may be from a product of one factor for each direction, as a share of them: rounding.
-_PRODUCT = 1e-14
+#: How far weights may be from a product of one factor for each direction, as a share of them: rounding, which moves a
+#: patch and its tangents by less than the rounding that its cells allow for.
+_PRODUCT = 1e-13
 
 
 class _Bounds:
@@ -145,25 +146,26 @@ def derivative_bounds(nets: Array, width_u: Array, width_v: Array, *orders: int)
     middle = _Bounds(nets, w * places.mean(axis=(2, 3), keepdims=True), width_u, width_v)
     # Derivatives along u are those of S less any function of v, and the other way round.  That matters where a patch is
     # much longer than its bends are wide, as on fillets: far from c its own length would count as a bend.
-    if _vary_as_products(w):
+    separable = _vary_as_products(w)
+    along_u = along_v = middle
+    if separable.any():
         along_u = _Bounds(nets, w * places.mean(axis=2, keepdims=True), width_u, width_v)
         along_v = _Bounds(nets, w * places.mean(axis=3, keepdims=True), width_u, width_v)
-    else:
-        along_u = along_v = middle
     found = []
     for order in orders:
         for k in range(order + 1):
             bound = middle.of(order - k, k)
             if k < order:
-                bound = np.minimum(bound, along_u.of(order - k, k))
+                bound = np.where(separable, np.minimum(bound, along_u.of(order - k, k)), bound)
             if k > 0:
-                bound = np.minimum(bound, along_v.of(order - k, k))
+                bound = np.where(separable, np.minimum(bound, along_v.of(order - k, k)), bound)
             found.append(bound)
     return np.stack(found, axis=-1)
 
 
-def _vary_as_products(w: Array) -> bool:
-    """Whether weights (..., pu + 1, pv + 1, 1) differ, and are products of one factor for each direction."""
+def _vary_as_products(w: Array) -> NDArray[np.bool_]:
+    """Patches whose weights (nu, nv, pu + 1, pv + 1, 1) differ and are products of one factor for each direction."""
     first = w[..., :1, :1, :]
     product = w[..., :1, :, :] * w[..., :, :1, :] / first
-    return bool((w != first).any() and (np.abs(product - w) <= _PRODUCT * w).all())
+    differ = (w != first).any(axis=(2, 3, 4))
+    return np.asarray(differ & (np.abs(product - w) <= _PRODUCT * w).all(axis=(2, 3, 4)))
