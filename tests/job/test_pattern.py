@@ -48,7 +48,7 @@ def sides(how: str = "") -> list[Face]:
     z, x = np.meshgrid(np.linspace(-6, 6, 5), np.linspace(20, 30, 4), indexing="ij")
     bend = 1 - (z / 6) ** 2
     made = []
-    for bulge, flip in ((2.0, False), (0.5, True)):
+    for bulge, flip in ((5.0 if "thick" in how else 2.0, False), (0.5, True)):
         points = np.dstack([x, bulge * bend + 0.02 * (x - 20) * z, z])
         if "swapped" in how:
             points, flip = points.swapaxes(0, 1), not flip
@@ -82,6 +82,42 @@ def ring(count: int = 6) -> Part:
     hub = Face(CylindricalSurface(12.0, (0.0, 2 * np.pi), (-8.0, 8.0)).nurbs(), kind="cylinder")
     return Part.from_faces([hub, *(face.transformed(turn(2 * np.pi * k / count)) for k in range(count)
                                    for face in lens)])
+
+
+def capped_wheel(bulge_of_one: float) -> Part:
+    """Blades with a third face at their outer end, which bulges on one of them."""
+    y, z = np.meshgrid(np.linspace(0, 1, 4), np.linspace(-6, 6, 5), indexing="ij")
+    bend = 1 - (z / 6) ** 2
+    faces = list(wheel(change=("thick",) * COUNT).faces)
+    for k in range(COUNT):
+        across = (0.5 + 4.5 * y) * bend + 0.2 * z
+        out = 30 + (bulge_of_one if k == 2 else 0.0) * np.sin(np.pi * y) * bend
+        faces.append(Face.from_bspline(np.dstack([out, across, z])).transformed(turn(2 * np.pi * k / COUNT)))
+    return Part.from_faces(faces)
+
+
+def test_a_face_that_differs_from_blade_to_blade_is_planned_by_itself_on_every_blade() -> None:
+    alike, _ = find_pattern(capped_wheel(0.0))
+    assert alike is not None and not alike.unlike
+    assert all(len(blade.numbers) == 3 for blade in alike.blades.blades)
+    found, notes = find_pattern(capped_wheel(0.55))
+    assert found is not None and not notes
+    caps = {10, 11, 12, 13}
+    assert set(found.unlike) < caps and len(found.unlike) == 1
+    assert {face.number for face in found.rest} == caps
+    assert all(len(blade.numbers) == 2 for blade in found.blades.blades)
+    assert any("have no like on every other one" in warning for warning in found.part.warnings)
+
+
+def test_sides_that_differ_from_blade_to_blade_are_no_pattern() -> None:
+    part = wheel()
+    first = part.faces[1]
+    points = first.surface.control[..., :3].copy()
+    points[2, 1:3, 1] += 0.9
+    changed = [part.faces[0], Face.from_bspline(points, flip=first.flip), *part.faces[2:]]
+    found, notes = find_pattern(Part.from_faces(changed))
+    assert found is None
+    assert "no face of another blade is like face 2, a side of the first one" in notes[0]
 
 
 @pytest.fixture(scope="module")

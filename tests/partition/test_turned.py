@@ -63,6 +63,15 @@ def test_parameters_that_do_not_begin_at_zero_are_carried_over(how):
         face.evaluate(uv).point @ matrix[:3, :3].T + matrix[:3, 3], abs=1e-9)
 
 
+def test_a_face_whose_parameters_crowd_at_one_end_is_matched():
+    """The mean of its samples lies far from the middle of the box around it."""
+    points = net()
+    points[..., 0] = 30.0 * (points[..., 0] / 30.0) ** 3
+    face, matrix = plain(points), turn_about(POINT, AXIS, ANGLE)
+    other = counterpart(face, matrix, [elsewhere(plain()), elsewhere(face)])
+    assert other is not None and other.away < 1e-9
+
+
 @pytest.mark.parametrize("away", [0.0, 0.02, -0.3])
 def test_how_far_a_counterpart_lies_off_counts_along_its_normal(away):
     face, matrix = plain(), turn_about(POINT, AXIS, ANGLE)

@@ -1,6 +1,7 @@
 """Sentences on a part with blades: how many, what was turned, how near the tool comes, what stays for clean-up."""
 
 from toolaxis.plan.blades import SIDES, Blades
+from toolaxis.plan.part_account import PartAccount
 from toolaxis.plan.plan import Plan
 
 _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
@@ -71,8 +72,11 @@ def _left_on_blades(plan: Plan, blades: Blades) -> list[str]:
 
 def _by_side(plan: Plan, blades: Blades, number: int) -> str:
     """Area that stays on one blade, by what its faces are."""
-    left = dict.fromkeys(SIDES, 0.0)
-    for op in plan.operations:
-        if blades.blade_of(op.face.number) == number:
-            left[blades.side_of(op.face.number)] += op.face.area * (op.orientation.unreached if op.done else 1.0)
-    return ", ".join(f"{name} {area:.1f} mm2" for name, area in left.items() if area > 0.05)
+    found = []
+    for name in SIDES:
+        account = PartAccount.of([op for op in plan.operations if blades.blade_of(op.face.number) == number
+                                  and blades.side_of(op.face.number) == name])
+        left = account.area - account.machined
+        if left > 0.05:
+            found.append(f"{name} {left:.1f} mm2")
+    return ", ".join(found)

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 SAME = 1e-4
 #: Greatest distance between a turned face and its counterpart, as a share of the face's diagonal.
 NEAR = 0.02
+#: The same for each side of the box around samples of the turned face.
+_CLOSE = 0.1
 #: Two charts agree where points of equal parameters are this much closer than that, as a share of the diagonal.
 _AGREE = 1e-5
 #: Bounds of a piece and of its face closer than this share of the range are one.
@@ -99,8 +101,8 @@ def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpar
     """
     uv = places_of(face, _GRID)
     points = apply_motion(matrix, face.evaluate(uv).point)
-    close = [other for other in others
-             if np.linalg.norm(other.box.mean(axis=0) - points.mean(axis=0)) <= 0.2 * face.diagonal]
+    corners = np.array([points.min(axis=0), points.max(axis=0)])
+    close = [other for other in others if np.abs(other.box - corners).max() <= _CLOSE * face.diagonal]
     for how in (_counterpart_by_parameters, _counterpart_by_nearest_points):
         found = [one for one in (how(face, uv, points, other) for other in close) if one is not None]
         if found:

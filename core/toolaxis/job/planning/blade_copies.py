@@ -153,8 +153,7 @@ def _fail_blade(pattern: Pattern, k: int, first: Plan, why: Fault) -> _OnBlade:
     """Operations of blade k + 2, on which the program failed."""
     lost = []
     for op in first.operations:
-        other = pattern.matching[k].get(op.face.number)
-        face = op.face if other is None else pattern.part.face(other.face.number)
+        face = pattern.part.face(pattern.matching[k][op.face.number].face.number)
         lost.append(fail_face(op.number, face, op.tool, why))
     return lost, [0] * len(lost)
 
@@ -221,12 +220,7 @@ def _elsewhere(pattern: Pattern, k: int, op: Operation, means: _Means) -> tuple[
     """An operation on another blade, and whether it is the turned copy."""
     planner, _, progress = means
     number = op.face.number
-    other = pattern.matching[k].get(number)
-    matrix = pattern.motions[k]
-    if other is None:
-        beside = pattern.blades.blades[k + 1].numbers[0]
-        reason = f"no face where the turn puts face {number}: plan the faces of this blade ({beside} ...) by hand"
-        return Operation(op.number, op.face, op.tool, Orientation(None, reasons=(reason,))), False
+    other, matrix = pattern.matching[k][number], pattern.motions[k]
     suffix = op.face.label.removeprefix(str(number))
     piece, away = turn_piece(op.face, pattern.face(number), other, matrix, f"{other.face.number}{suffix}")
     apart = pattern.blades.apart(pattern.part, piece.number)

@@ -48,6 +48,8 @@ class Pattern:
         That bring the first blade onto each of the others.
     pieces : dict of int to tuple of Face
         What other bodies of the part leave of the faces that they cover in part or whole, by number.
+    unlike : tuple of int
+        Faces of the first blade that have no like on another one: on every blade they are planned by themselves.
     """
 
     part: Part
@@ -55,6 +57,7 @@ class Pattern:
     matching: tuple[dict[int, Counterpart], ...]
     motions: tuple[Array, ...]
     pieces: dict[int, tuple[Face, ...]] = field(default_factory=dict)
+    unlike: tuple[int, ...] = ()
 
     def face(self, number: int) -> Face:
         """A face of a blade without what other bodies cover; where they part it, its largest piece.
@@ -127,6 +130,11 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
     part : Part
     rotor : Bladed
         From `toolaxis.bladed.find_blades.blades_of`.
+
+    Raises
+    ------
+    UnsupportedGeometry
+        When a side of the first blade has no like on another one.
     """
     count = len(rotor.blades)
     own = [{**_name_faces(blade), "hub": ()} for blade in rotor.blades]
@@ -144,13 +152,33 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
         kept = {n: other for n, other in found.items() if other is not None}
         matching.append(kept)
         motions.append(best_motion(matrix, [(part.face(n), other) for n, other in kept.items()]))
+    unlike = _keep_alike(rotor, own, matching)
     if hub is not None and len({m[hub.number].face.number for m in matching if hub.number in m}) == count - 1:
         own[0]["hub"] = (hub.number,)
         for k, found_on in enumerate(matching, 1):
             own[k]["hub"] = (found_on[hub.number].face.number,)
     bare = tuple(PlannedBlade(faces) for faces in own)
     gap = _gap(part, bare)
-    return Pattern(part, Blades(rotor.point, rotor.axis, rotor.hub, bare, gap, {}), tuple(matching), tuple(motions))
+    blades = Blades(rotor.point, rotor.axis, rotor.hub, bare, gap, {})
+    return Pattern(part, blades, tuple(matching), tuple(motions), unlike=unlike)
+
+
+def _keep_alike(rotor: Bladed, own: list[dict[str, tuple[int, ...]]],
+                matching: list[dict[int, Counterpart]]) -> tuple[int, ...]:
+    """Take faces that are not on every blade out of the blades, and tell which ones of the first blade they are."""
+    first = rotor.blades[0]
+    unlike = [n for n in first.faces if any(n not in found for found in matching)]
+    sides = [n for n in unlike if n in first.suction + first.pressure]
+    if sides:
+        raise UnsupportedGeometry(f"no face of another blade is like face {sides[0]}, a side of the first one")
+    for found in matching:
+        for n in unlike:
+            found.pop(n, None)
+    alike = [set(first.faces).difference(unlike)]
+    alike += [{other.face.number for other in found.values()} for found in matching]
+    for faces, kept in zip(own, alike, strict=True):
+        faces.update({name: tuple(n for n in numbers if n in kept) for name, numbers in faces.items()})
+    return tuple(unlike)
 
 
 def _add_warnings(pattern: Pattern) -> Pattern:
@@ -167,6 +195,9 @@ def _add_warnings(pattern: Pattern) -> Pattern:
         area = sum(piece.area for left in small.values() for piece in left)
         notes.append(f"other bodies divide {len(small)} faces of blades ({min(small)} the first): their smaller "
                      f"pieces, {area:.2f} mm2, are not machined")
+    if pattern.unlike:
+        notes.append(f"faces {', '.join(map(str, pattern.unlike))} of the first blade have no like on every other "
+                     "one: such faces are planned by themselves")
     if pattern.stray:
         notes.append(f"faces {', '.join(map(str, pattern.stray))} belong to stray bodies smaller than "
                      f"{_STRAY * pattern.part.diagonal:.1f} mm: they are kept clear of, not machined")
