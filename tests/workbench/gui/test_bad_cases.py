@@ -66,6 +66,7 @@ def test_a_body_stands_for_its_sculptured_faces(desk, wavy):
     form = desk.start(wavy[0])
     names = [desk.text(form.faces, k) for k in range(form.faces.count())]
     assert any(wavy[1] in name for name in names) and form.compute.isEnabled()
+    assert form.rack.currentText() == "general rack"
     assert len(names) < len(wavy[0].Shape.Faces)
 
 

@@ -56,6 +56,7 @@ def test_a_part_with_blades_is_planned_whole(desk, name):
     part, = (thing for thing in document.RootObjects if thing.TypeId in ("App::Part", "Part::Feature"))
     pauses = Pauses(desk.qt)
     form = desk.start(part)
+    form.rack.setCurrentIndex(0)
     form.tabs.setCurrentWidget(form.toolTab)
     if tool == "typed":
         form.kind.setCurrentIndex(0)

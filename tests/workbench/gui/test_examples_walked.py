@@ -122,6 +122,7 @@ def filled(walk, part):
     """The panel, filled in."""
     desk, asked = walk.desk, WALKS[walk.name]
     form = desk.start(part)
+    form.rack.setCurrentIndex(0)
     form.tabs.setCurrentWidget(form.toolTab)
     desk.type(form.diameter, asked.diameter)
     desk.type(form.stickout, asked.stickout)

@@ -68,6 +68,8 @@ def listed(desk, form):
 
 def test_with_a_rack_skins_are_listed_and_one_that_is_marked_is_lit(desk, skin):
     form = desk.start(skin)
+    assert form.rack.currentText() == "general rack", "a whole part is machined with a rack"
+    form.rack.setCurrentIndex(0)
     faces = form.faces.count()
     assert faces > 2 and form.facesTold.toolTip() == f"{faces} of {skin.Label}"
     form.rack.setCurrentIndex(form.rack.findText("general rack"))

@@ -66,12 +66,14 @@ def test_new_plans_begin_with_what_is_preferred(desk, kept, wavy):
 
     part, face = wavy
     usual = defaults(part.Document, ((part, face),))
-    assert usual.tool.startswith("torus:")
+    assert usual.tool.startswith("torus:") and not usual.rack
+    assert defaults(part.Document, ((part, face),), whole=True).rack == ("general-rack",)
     kept.SetString("Tool", "ball:4")
     kept.SetFloat("Scallop", 0.03)
     kept.SetFloat("FeedRate", 640.0)
     found = defaults(part.Document, ((part, face),))
     assert (found.tool, found.scallop, found.feedrate, found.spindle) == ("ball:4", 0.03, 640.0, usual.spindle)
+    assert not defaults(part.Document, ((part, face),), whole=True).rack, "the tool is preferred to any rack"
     assert found.stickout == 20.0 and found.assembled().kind == "ball"
     kept.SetString("Tool", "ball")
     assert defaults(part.Document, ((part, face),)).tool == usual.tool, "a tool that is none"

@@ -239,6 +239,7 @@ def test_other_blades_are_shown_as_turned_links(desk, whole_parts, tmp_path):
 
     wheel = shown(desk, lambda document: (whole_parts.wheel(document),))[0]
     form = desk.start(wheel)
+    form.rack.setCurrentIndex(0)
     form.tabs.setCurrentWidget(form.toolTab)
     form.kind.setCurrentIndex(0)
     desk.type(form.diameter, "6 mm")

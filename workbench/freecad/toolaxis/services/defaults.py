@@ -22,8 +22,11 @@ _USUAL, _LONGEST, _STEP, _CLEAR = 5.0, 12.0, 5.0, 2.0
 _GAP = 0.6
 
 
-def defaults(document, faces):
+def defaults(document, faces, whole=False):
     """Inputs for faces: the first usable tool of a CAM job, else what is preferred, or a bull nose that fits the faces.
+
+    Whole parts get the general rack where neither a CAM job nor the user's preferences name a tool: few parts can be
+    machined with one.
 
     Its diameter follows what most of the area allows, fillets and corners aside, and the gap before the faces; its
     stick-out follows how deep they lie in the part.  The other bodies of the assembly, or part container, of which they
@@ -33,12 +36,16 @@ def defaults(document, faces):
     ----------
     document : App.Document
     faces : sequence of (object, "Face7")
+    whole : bool
+        Whether they stand for whole bodies.
 
     Returns
     -------
     freecad.toolaxis.document.inputs.JobInputs
         Also where the faces cannot be used; they are refused later, with the reason.
     """
+    from toolaxis.job.inputs.tool_library import GENERAL_RACK
+
     shapes = _faces(faces)
     beside = bodies_beside(document, list(dict.fromkeys(thing for thing, _ in faces)))
     seen = FacesSeen.of(shapes, _parts_of(faces, beside))
@@ -48,7 +55,9 @@ def defaults(document, faces):
             found = tool_fields(tool_from(controller))
             feed, spindle = speeds(controller)
             inputs = replace(inputs, **found, feedrate=feed or inputs.feedrate, spindle=spindle or inputs.spindle)
-            break
+            return inputs
+    if whole and "tool" not in preferred_inputs():
+        return replace(inputs, rack=(GENERAL_RACK,))
     return inputs
 
 

@@ -24,7 +24,7 @@ from freecad.toolaxis.gui.plan.player import PlanPlayer
 from freecad.toolaxis.gui.plan.preview import Preview
 from freecad.toolaxis.gui.plan.remedy_row import RemedyRow
 from freecad.toolaxis.gui.plan.result_tab import AxisView
-from freecad.toolaxis.gui.plan.selection import selected_faces
+from freecad.toolaxis.gui.plan.selection import selected_faces, selects_whole_bodies
 from freecad.toolaxis.gui.plan.setup_preview import SetupPreview
 from freecad.toolaxis.gui.plan.tool_offer import ToolOffer
 from freecad.toolaxis.gui.widgets.fields import fit_pages, load_form, tell
@@ -123,7 +123,7 @@ class PlanPanel(Panel):
     def _fill(self, inputs):
         faces, problems = selected_faces(self.document)
         if inputs is None:
-            inputs = defaults(self.document, faces)
+            inputs = defaults(self.document, faces, selects_whole_bodies(self.document))
         text = getattr(self.operation, "Account", "")
         self.standing = account_from(text)
         self.view.show_account(self.standing)

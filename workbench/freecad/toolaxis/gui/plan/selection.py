@@ -35,6 +35,19 @@ def selected_faces(document):
     return list(dict.fromkeys(faces)), list(dict.fromkeys(problems))
 
 
+def selects_whole_bodies(document):
+    """Whether all that is selected in a document are objects as a whole, none of their faces or edges.
+
+    Parameters
+    ----------
+    document : App.Document
+    """
+    entries = FreeCADGui.Selection.getSelectionEx(document.Name, 0)
+    names = [name for entry in entries for name in entry.SubElementNames or ("",)]
+    elements = [name.split(".")[-1] for name in names]
+    return bool(elements) and not any(elements)
+
+
 def faces_of_only_body(document):
     """The sculptured faces of the body that a document has in sight; none where there are several, or it has none.
 
