@@ -108,9 +108,9 @@ class Attack:
         self._outlines = [(k, outline_of(self.tools[k], 2 * self.part.diagonal)) for k in order]
         self._roles: dict[tuple[int, ...], NDArray[np.int64]] = {}
 
-    def rule(self, clear: bool) -> Rule:
-        """What has to be kept: all clearances, or only that nothing is entered."""
-        t = self.tolerance
+    def rule(self, clear: bool, tool: Tool) -> Rule:
+        """What a tool has to keep: all clearances, or only that nothing is entered."""
+        t = self.tolerance.for_cutter(2 * tool.radius)
         least = np.full((3, 4), -t.gouge)
         least[:, 3] = -np.inf
         if clear:
@@ -128,22 +128,22 @@ class Attack:
         clear : bool
             Whether clearances are kept.
         """
-        found = self._touch(place, self.rule(clear), DENSE, hemisphere(place.normal, self.axes))
+        found = self._touch(place, clear, DENSE, hemisphere(place.normal, self.axes))
         if found.lack > 0:
             return found
         # From the axis that seemed to fit on, among axes all around it.
         near = hemisphere(found.axis, 20 * self.axes)[:200]
-        again = self._touch(place, self.rule(clear), DENSER, np.vstack([found.axis, near]))
+        again = self._touch(place, clear, DENSER, np.vstack([found.axis, near]))
         return again._replace(tried=found.tried + again.tried)
 
-    def _touch(self, place: Place, rule: Rule, density: Density, axes: Array) -> Reach:
+    def _touch(self, place: Place, clear: bool, density: Density, axes: Array) -> Reach:
         samples = self._samples.around(place.point, density)
         points = Points.of(samples.point, self._role(place.face)[samples.face], samples.step, place.point)
         contact = np.ascontiguousarray(place.point), np.ascontiguousarray(place.normal)
         least, tool, axis, tried = np.inf, -1, place.normal, 0
         for k, outline in self._outlines:
             best = np.array([max(least, _WORTH), *place.normal])
-            tried += try_axes(outline, rule, points, contact, axes, best)
+            tried += try_axes(outline, self.rule(clear, self.tools[k]), points, contact, axes, best)
             if best[0] < least:
                 least, tool, axis = best[0], k, best[1:].copy()
             if least <= 0:

@@ -68,10 +68,10 @@ def screen_face(face: Face, tools: Sequence[Tool], scene: ReachScene, rng: np.ra
     widths(cells, tools, axes, SCALLOP)
     priced = time.process_time()
     table, proof = np.zeros((2, 2), dtype=int), 0.0
-    groups = group_surroundings(face, scene.tolerance, part=scene.part)
     rows = rng.choice(len(cells), min(PROVEN_CELLS, len(cells)), replace=False)
     for number, tool in enumerate(tools):
-        judge = Feasibility(face, tool, groups, scene.tolerance)
+        kept = scene.tolerance.for_cutter(2 * tool.radius)
+        judge = Feasibility(face, tool, group_surroundings(face, kept, part=scene.part), kept)
         seen = seen_cells(cells, tool, axes, scene.tolerance)
         for a in range(min(PROVEN_AXES, len(axes))):
             some = rows[seen[a, rows]]

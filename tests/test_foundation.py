@@ -29,6 +29,16 @@ def test_default_tolerances() -> None:
     assert Tolerance(cutter_clearance=0.0, min_lead=0.0).cutter_clearance == 0.0
 
 
+def test_the_shank_of_a_thin_cutter_keeps_a_share_of_its_diameter() -> None:
+    kept = [Tolerance().for_cutter(diameter).shank_clearance for diameter in (0.5, 1.0, 2.0, 4.0, 5.0, 20.0)]
+    assert kept == pytest.approx([0.1, 0.1, 0.2, 0.4, 0.5, 0.5])
+    assert Tolerance(cutter_clearance=0.3).for_cutter(1.0).shank_clearance == 0.3
+    assert Tolerance(shank_clearance=0.05).for_cutter(1.0).shank_clearance == 0.05
+    assert Tolerance(shank_share=None).for_cutter(1.0) == Tolerance(shank_share=None)
+    once = Tolerance().for_cutter(1.0)
+    assert once.for_cutter(20.0) == once, "what was decided stays"
+
+
 def test_the_chord_tolerance_is_a_share_of_scallop_height_and_machining_tolerance() -> None:
     assert [Tolerance().chord_for(scallop) for scallop in (0.01, 0.02, 0.2)] == pytest.approx([0.001, 0.002, 0.0025])
     assert Tolerance(0.002).chord_for(0.02) == pytest.approx(0.0005)
@@ -52,7 +62,8 @@ def test_a_wrong_machining_tolerance_is_refused_in_one_sentence(value: object) -
 
 
 @pytest.mark.parametrize("name, value", [("chord", 0.0), ("trim", 0.0), ("chord", "fine"),
-                                         ("holder_clearance", -0.1), ("shank_clearance", inf), ("min_lead", nan)])
+                                         ("holder_clearance", -0.1), ("shank_share", -0.1),
+                                         ("shank_clearance", inf), ("min_lead", nan)])
 def test_wrong_tolerances(name: str, value: object) -> None:
     with pytest.raises(InvalidInput, match=f"tolerance {name} is {value}: it must be"):
         Tolerance(**{name: value})  # type: ignore[arg-type]

@@ -1,6 +1,6 @@
 """All tolerances and required clearances in one frozen place."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import degrees, isfinite, pi, radians
 from numbers import Real
 from typing import Any, TypeAlias
@@ -36,6 +36,10 @@ class Tolerance:
         of a ball the cutting speed is zero.  0 allows all; cutters with a flat bottom keep `min_lead` in its place.
     trim : float
         Chord tolerance of trim loops, as a share of the face's diagonal; at most 0.0002 mm, however large the face.
+    shank_share : float or None
+        Share of the cutter's diameter that is enough for its shank where it is less than `shank_clearance`, but no less
+        than `cutter_clearance`: the neck of a 1 mm ball end that kept 0.5 mm would stay out of the corners that it is
+        made for.  None: every shank keeps `shank_clearance`.
 
     Raises
     ------
@@ -51,6 +55,7 @@ class Tolerance:
     min_lead: float = radians(0.5)
     trim: float = 1e-5
     least_lean: float = 0.0
+    shank_share: float | None = 0.1
 
     def __post_init__(self) -> None:
         _check_machining(self.gouge)
@@ -83,6 +88,19 @@ class Tolerance:
             return given
         _check_machining(given)
         return cls(gouge=float(given))
+
+    def for_cutter(self, diameter: float) -> "Tolerance":
+        """The same for one cutter: `shank_clearance` is what its shank keeps, and `shank_share` None.
+
+        Parameters
+        ----------
+        diameter : float
+            mm
+        """
+        if self.shank_share is None:
+            return self
+        enough = max(self.shank_share * diameter, self.cutter_clearance)
+        return replace(self, shank_clearance=min(self.shank_clearance, enough), shank_share=None)
 
     def least_angle(self, flat_radius: float) -> float:
         """Least angle between the axis of a cutter and the normal at its contacts, rad.

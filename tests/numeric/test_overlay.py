@@ -191,6 +191,21 @@ def test_rests_side_by_side_divide_as_one(seed: int) -> None:
     assert area(inside) + area(outside) == pytest.approx(16.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(60))
+def test_a_piece_along_the_longest_side_is_not_taken_for_the_rest(seed: int) -> None:
+    """Found: on a side that both share rounding decided, and the judge was told the rest in place of the piece."""
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2 * np.pi)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    whole = np.array([[-2.0, 0.0], [2.0, 0.0], [2.5, 1.0], [2.0, 2.0], [0.0, 2.5], [-2.0, 2.0], [-2.5, 1.0]]) @ turn
+    left, right = np.sort(rng.uniform(-1.9, 1.9, 2))
+    piece = np.array([[left, 0.0], [right, 0.0], [right, 0.8], [(left + right) / 2, 1.2], [left, 0.8]]) @ turn
+    inside, outside = divide_nearly((whole,), (piece,))
+    wanted = abs(float(signed_area(piece)))
+    assert area(inside) == pytest.approx(wanted, rel=1e-4)
+    assert area(inside) + area(outside) == pytest.approx(abs(float(signed_area(whole))), rel=1e-9)
+
+
 def test_nothing_is_left_of_a_loop_that_only_goes_there_and_back() -> None:
     assert len(cut_spikes(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0]]))) < 3
 

@@ -46,9 +46,9 @@ def compare(part: Part, tools: list[Tool], faces: list[Face]) -> np.ndarray:
         axes = rng.permutation(screening_axes([cells]))[:8]
         drawn = rng.choice(len(cells), min(30, len(cells)), replace=False)
         free = screen_reach(cells, tools, axes, scene)
-        groups = group_surroundings(face, scene.tolerance, part=part)
         for number, tool in enumerate(tools):
-            judge = Feasibility(face, tool, groups, scene.tolerance)
+            kept = scene.tolerance.for_cutter(2 * tool.radius)
+            judge = Feasibility(face, tool, group_surroundings(face, kept, part=part), kept)
             seen = seen_cells(cells, tool, axes, scene.tolerance)
             assert not (free[number] & ~seen).any()
             for a, axis in enumerate(axes):

@@ -20,6 +20,10 @@ Edge = tuple[Corner, Corner]
 
 #: Share of a loop's size up to which corners coincide and spikes have no width.
 _SPIKE = 1e-8
+#: Edges of a stretch that tell on which side of a border it lies, of those that are no shorter than this share of the
+#: longest: others may be the ends at a crossing.
+_ASKED, _LONG = 9, 1e-3
+_ON_BORDER = "a corner of one polygon lies on the border of the other: move one of them a little"
 #: Shares of its size by which a polygon is moved so that no corner lies on another one's border, and the way.
 _MOVES, _ASLANT = (0.0, 1.7e-7, -3.1e-7, 7.3e-7, -1.3e-6), np.array([0.8, 0.6])
 #: Rows of one polygon's edges that are held against all of the other's at a time.
@@ -210,14 +214,26 @@ def _chains(loops: Loops, crossings: Array, points: Array) -> list[_Chain]:
 
 
 def _within(chains: list[_Chain], loops: Loops) -> list[bool]:
-    """Whether chains lie inside loops that they do not cross: the middle of the longest edge of each decides."""
-    middles = []
+    """Whether chains lie inside loops that they do not cross: the middles of some edges of each decide.
+
+    Raises
+    ------
+    InvalidInput
+        When these disagree: the chain runs along a border, where rounding decides.
+    """
+    middles, counts = [], []
     for chain in chains:
         start = chain.points if chain.first < 0 else chain.points[:-1]
         end = np.roll(chain.points, -1, axis=0)[:len(start)]
-        k = int(np.argmax(np.abs(end - start).sum(axis=1)))
-        middles.append((start[k] + end[k]) / 2)
-    return list(inside(slabs(loops), np.array(middles)))
+        length = np.abs(end - start).sum(axis=1)
+        long = np.flatnonzero(length >= _LONG * length.max())
+        some = long[np.linspace(0, len(long) - 1, min(len(long), _ASKED)).astype(np.intp)]
+        middles.append((start[some] + end[some]) / 2)
+        counts.append(len(some))
+    within = np.split(inside(slabs(loops), np.concatenate(middles)), np.cumsum(counts)[:-1])
+    if any(one.any() != one.all() for one in within):
+        raise InvalidInput(_ON_BORDER)
+    return [bool(one[0]) for one in within]
 
 
 def _close_chains(chains: list[_Chain], crossings: int) -> Loops:
@@ -229,7 +245,7 @@ def _close_chains(chains: list[_Chain], crossings: int) -> Loops:
         at[chain.first].append((k, 0))
         at[chain.last].append((k, 1))
     if any(len(ends) not in (0, 2) for ends in at):
-        raise InvalidInput("a corner of one polygon lies on the border of the other: move one of them a little")
+        raise InvalidInput(_ON_BORDER)
     free = dict.fromkeys(range(len(open_)))
     while free:
         k, end, parts = next(iter(free)), 0, []

@@ -210,7 +210,8 @@ def _round_angles(rows: Array, machine: Machine, digits: int) -> Array:
 def _close(rows: Array, op: Operation, plan: Plan, mounting: Mounting) -> Array:
     """The angles at which the tool does not lean away from the axis that the passes were made and checked for."""
     assert op.path is not None
-    tolerance, tool = plan.inputs.tolerance, op.tool
+    tool = op.tool
+    tolerance = plan.inputs.tolerance.for_cutter(2 * tool.radius)
     least = min(tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)
     leans = np.array([float(np.max(angle_between(op.path.axis, mounting.axis_at(row)))) for row in rows])
     shifts, swings = leans * 2 * tool.radius, leans * tool.height

@@ -119,6 +119,8 @@ class ReachScene:
         outlines = list(tool.outlines.items())
         name, top = outlines[-1] if outlines else ("cutter" if tool.half_angle == 0 else "shank", None)
         limits = required.copy()
+        own = self.tolerance.for_cutter(2 * tool.radius)
+        limits[:, COMPONENTS.index("shank")] -= self.tolerance.shank_clearance - own.shank_clearance
         held = np.isfinite(limits[:, _ABOVE])
         limits[held, _ABOVE] = limits[held, COMPONENTS.index(name)]
         radius = tool.profile.top_radius if top is None else float(top[top[:, 1] == top[-1, 1], 0].max())

@@ -168,7 +168,8 @@ def _task_at(plan: Plan, done: Sequence[Operation], place: int) -> VerificationT
 def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
-    around = group_surroundings(op.face, plan.inputs.tolerance, plan.inputs.allowance_of(op.face),
+    tolerance = plan.inputs.tolerance.for_cutter(2 * op.tool.radius)
+    around = group_surroundings(op.face, tolerance, plan.inputs.allowance_of(op.face),
                                 part=plan.part_around(op.face.number),
                                 obstacles=[face for body in plan.obstacles for face in body.faces])
 
@@ -193,7 +194,7 @@ def _task(plan: Plan, op: Operation, last: Operation | None = None) -> Verificat
     on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
     return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
                             plan.inputs.scallop, plan.inputs.allowance_of(op.face), _of(SKIN), _of(TOUCHING),
-                            (*_of(OTHER), *avoided), op.tool.outlines, plan.inputs.tolerance, left,
+                            (*_of(OTHER), *avoided), op.tool.outlines, tolerance, left,
                             op.orientation.axis if op.orientation.lead is None else None,
                             machine=None if machine is None else machine.machine, place=on_table,
                             tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
