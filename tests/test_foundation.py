@@ -35,6 +35,7 @@ def test_the_shank_of_a_thin_cutter_keeps_a_share_of_its_diameter() -> None:
     assert Tolerance(cutter_clearance=0.3).for_cutter(1.0).shank_clearance == 0.3
     assert Tolerance(shank_clearance=0.05).for_cutter(1.0).shank_clearance == 0.05
     assert Tolerance(shank_share=None).for_cutter(1.0) == Tolerance(shank_share=None)
+    assert Tolerance(0.02).keeping("0.1,0.3,2") == Tolerance(0.02, 0.1, 0.3, 2.0, shank_share=None)
     once = Tolerance().for_cutter(1.0)
     assert once.for_cutter(20.0) == once, "what was decided stays"
 

@@ -1,5 +1,6 @@
 """All tolerances and required clearances in one frozen place."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from math import degrees, isfinite, pi, radians
 from numbers import Real
@@ -88,6 +89,27 @@ class Tolerance:
             return given
         _check_machining(given)
         return cls(gouge=float(given))
+
+    def keeping(self, clearances: Sequence[float] | str) -> "Tolerance":
+        """The same with other clearances, which every tool keeps.
+
+        Parameters
+        ----------
+        clearances : sequence of float, or text such as "0.1,0.5,1"
+            Of cutter, shank and holder, mm.
+
+        Raises
+        ------
+        InvalidInput
+            When these are not three numbers, or one is below zero.
+        """
+        rows = clearances.split(",") if isinstance(clearances, str) else clearances
+        try:
+            cutter, shank, holder = (float(row) for row in rows)
+        except (TypeError, ValueError) as reason:
+            raise InvalidInput(f"clearances {clearances!r} are not understood: give three lengths in mm, of cutter, "
+                               "shank and holder, such as 0.1,0.5,1") from reason
+        return replace(self, cutter_clearance=cutter, shank_clearance=shank, holder_clearance=holder, shank_share=None)
 
     def for_cutter(self, diameter: float) -> "Tolerance":
         """The same for one cutter: `shank_clearance` is what its shank keeps, and `shank_share` None.

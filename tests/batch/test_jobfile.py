@@ -26,6 +26,26 @@ def read(folder: Path, text: str) -> tuple[CheckedJob, ...]:
     return read_jobs(folder / "jobs.toml")
 
 
+def test_clearances_are_said_as_in_the_command_or_as_a_list(here: Path) -> None:
+    jobs = read(here, """
+        [defaults]
+        part = "a.step"
+        scallop = 0.02
+        [[jobs]]
+        name = "text"
+        clearances = "0.1,0.3,2"
+        [[jobs]]
+        name = "list"
+        clearances = [0.1, 0.3, 2]
+        tolerance = 0.02
+        """)
+    kept = [job.spec.inputs.tolerance for job in jobs]
+    assert all((one.cutter_clearance, one.shank_clearance, one.holder_clearance) == (0.1, 0.3, 2.0) for one in kept)
+    assert [one.gouge for one in kept] == [0.01, 0.02] and all(one.shank_share is None for one in kept)
+    with pytest.raises(InvalidInput, match=r"clearances 5 are not understood"):
+        read(here, '[[jobs]]\npart = "a.step"\nscallop = 0.02\nclearances = 5\n')
+
+
 def test_defaults_hold_for_all_jobs_and_files_are_meant_from_the_job_files_folder(here: Path) -> None:
     (here / "cutter.toml").write_text('kind = "ball"\ndiameter = 6\n')
     one, two = read(here, """

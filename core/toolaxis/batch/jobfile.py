@@ -37,7 +37,7 @@ _INPUTS = {"scallop": float, "allowance": float, "stock": float, "greatest_step_
            "passes": str, "avoid": "avoided", "held": str, "allowance_on": "allowances", "lead": float,
            "origin": str, "stock_box": "margins"}
 #: What is written among the tolerances of a plan.
-_OF_TOLERANCE = {"least_lean": float}
+_OF_TOLERANCE = {"least_lean": float, "clearances": "clearances"}
 _ASKED = {"faces": str, "holder": str, "stickout": float, "regions": "count", "orientations": "count", "offset": str}
 _OWN = {"compare": bool, "verify": bool, "pictures": bool, "minutes": float, "timeout": float, "memory": float,
         "strategy": str, "roughness": float}
@@ -182,6 +182,8 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     if "least_lean" in values:
         tolerance = values.get("tolerance", Tolerance())
         values["tolerance"] = replace(tolerance, least_lean=radians(values["least_lean"]))
+    if "clearances" in values:
+        values["tolerance"] = values.get("tolerance", Tolerance()).keeping(values["clearances"])
     if values.get("limits"):
         parse_limits(values["limits"])
     if "holder" in values:
@@ -310,6 +312,9 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return parse_allowances(value)
     if kind == "margins":
         return format_margins(parse_margins(value))
+    if kind == "clearances":
+        Tolerance().keeping(value)
+        return value
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

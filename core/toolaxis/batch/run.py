@@ -60,9 +60,8 @@ def batch(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]], out: str | Pa
         A TOML file with [defaults] and [[jobs]], or the jobs themselves.  Each has the keys of `toolaxis.plan` and of
         the command: part, tool, scallop, faces, holder, stickout, obstacles, regions, orientations, machine, offset,
         limits, allowance, allowance_on, stock, greatest_step_over, lead, origin, stock_box, avoid, held, method,
-        strategy, objective,
-        direction, least_lean (degrees) and roughness (micrometres) as in the command, feedrate, spindle, rapid,
-        compare; and name (that of its folder; the part's file unless given), verify, pictures, minutes, timeout (s) and
+        strategy, objective, direction, clearances, least_lean (degrees) and roughness (micrometres) as in the command,
+        feedrate, spindle, rapid, compare; and name (that of its folder; the part's file unless given), verify, pictures, minutes, timeout (s) and
         memory (MB).  Parts and obstacles in mappings may be anything that `toolaxis.load` takes, tools a Tool,
         machines a Machine.
     out : path

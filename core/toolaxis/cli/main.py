@@ -139,6 +139,9 @@ def _add_division_options(sub: _Parser) -> None:
     sub.add_argument("--stock-box", default="", metavar="MM",
                      help="margins of the box that the part is cut from: one for all sides, or six for -x,+x,-y,+y,-z,"
                           "+z; the setup sheet tells it")
+    sub.add_argument("--clearances", default="", metavar="C,S,H",
+                     help="least distances of cutter, shank and holder from all that is not machined, mm (default: "
+                          "0.1,0.5,1, of which the shank of a cutter below 5 mm keeps a tenth of its diameter)")
     sub.add_argument("--least-lean", type=float, default=0.0, metavar="DEG",
                      help="least angle between the axis of a ball end, tapered ones too, and the normal at every "
                           "contact: at the tip of a ball the cutting speed is zero (default: 0, none is asked for; "
