@@ -19,8 +19,8 @@ NECKED = replace(ta.Tool.ball(diameter=1.0, stickout=20.0, shank=[(0.47, 0.0), (
 
 def flat(corner: list[float], one: list[float], other: list[float]) -> Face:
     """A plane face whose normal is one x other."""
-    points = np.array([[corner, np.add(corner, other)], [np.add(corner, one), np.add(corner, one) + other]], dtype=float)
-    return Face.from_bspline(points, (1, 1))
+    start, along, across = np.array(corner), np.array(one), np.array(other)
+    return Face.from_bspline(np.array([[start, start + across], [start + along, start + along + across]]), (1, 1))
 
 
 def groove() -> Part:

@@ -61,9 +61,9 @@ def batch(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]], out: str | Pa
         the command: part, tool, scallop, faces, holder, stickout, obstacles, regions, orientations, machine, offset,
         limits, allowance, allowance_on, stock, greatest_step_over, lead, origin, stock_box, avoid, held, method,
         strategy, objective, direction, clearances, least_lean (degrees) and roughness (micrometres) as in the command,
-        feedrate, spindle, rapid, compare; and name (that of its folder; the part's file unless given), verify, pictures, minutes, timeout (s) and
-        memory (MB).  Parts and obstacles in mappings may be anything that `toolaxis.load` takes, tools a Tool,
-        machines a Machine.
+        feedrate, spindle, rapid, compare; and name (that of its folder; the part's file unless given), verify,
+        pictures, minutes, timeout (s) and memory (MB).  Parts and obstacles in mappings may be anything that
+        `toolaxis.load` takes, tools a Tool, machines a Machine.
     out : path
         Folder of the batch, made where there is none.
     workers : int, optional
