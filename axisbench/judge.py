@@ -135,7 +135,8 @@ def verification_task(problem: BenchmarkProblem, entry: CutterEntry) -> Verifica
     others = tuple(face for face in problem.part.faces if face not in asked)
     return VerificationTask(problem.name, entry.tips, entry.axes, entry.kind, tool.profile, asked, problem.scallop,
                             touching=others, surroundings=problem.obstacles, outlines=tool.outlines,
-                            tolerance=Tolerance(problem.tolerance), machine=problem.machine_model)
+                            tolerance=Tolerance(problem.tolerance).for_cutter(2 * tool.radius),
+                            machine=problem.machine_model)
 
 
 def _merge_tools(measured: Sequence[OperationMeasurement]) -> list[OperationMeasurement]:
