@@ -135,7 +135,7 @@ def verification_task(problem: BenchmarkProblem, entry: CutterEntry) -> Verifica
     others = tuple(face for face in problem.part.faces if face not in asked)
     return VerificationTask(problem.name, entry.tips, entry.axes, entry.kind, tool.profile, asked, problem.scallop,
                             touching=others, surroundings=problem.obstacles, outlines=tool.outlines,
-                            tolerance=Tolerance(problem.tolerance).for_cutter(2 * tool.radius),
+                            tolerance=Tolerance(problem.tolerance).for_cutter(tool.radius),
                             machine=problem.machine_model)
 
 

@@ -110,7 +110,7 @@ class Attack:
 
     def rule(self, clear: bool, tool: Tool) -> Rule:
         """What a tool has to keep: all clearances, or only that nothing is entered."""
-        t = self.tolerance.for_cutter(2 * tool.radius)
+        t = self.tolerance.for_cutter(tool.radius)
         least = np.full((3, 4), -t.gouge)
         least[:, 3] = -np.inf
         if clear:

@@ -70,7 +70,7 @@ def screen_face(face: Face, tools: Sequence[Tool], scene: ReachScene, rng: np.ra
     table, proof = np.zeros((2, 2), dtype=int), 0.0
     rows = rng.choice(len(cells), min(PROVEN_CELLS, len(cells)), replace=False)
     for number, tool in enumerate(tools):
-        kept = scene.tolerance.for_cutter(2 * tool.radius)
+        kept = scene.tolerance.for_cutter(tool.radius)
         judge = Feasibility(face, tool, group_surroundings(face, kept, part=scene.part), kept)
         seen = seen_cells(cells, tool, axes, scene.tolerance)
         for a in range(min(PROVEN_AXES, len(axes))):

@@ -173,7 +173,7 @@ class Judge:
 
     def __init__(self, plan: Plan, tool: Tool, points: PartPoints) -> None:
         self._points, self._tool = points, tool
-        self._asked = plan.inputs.tolerance.for_cutter(2 * tool.radius)
+        self._asked = plan.inputs.tolerance.for_cutter(tool.radius)
         self._least = {"shank": self._asked.shank_clearance, "holder": self._asked.holder_clearance}
         #: Cross-sections through the axis, both sides of it.
         self._sections = {name: shapely.Polygon(np.concatenate([line, line[::-1] * [-1, 1]]))

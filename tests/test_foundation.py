@@ -30,14 +30,14 @@ def test_default_tolerances() -> None:
 
 
 def test_the_shank_of_a_thin_cutter_keeps_a_share_of_its_diameter() -> None:
-    kept = [Tolerance().for_cutter(diameter).shank_clearance for diameter in (0.5, 1.0, 2.0, 4.0, 5.0, 20.0)]
+    kept = [Tolerance().for_cutter(diameter / 2).shank_clearance for diameter in (0.5, 1.0, 2.0, 4.0, 5.0, 20.0)]
     assert kept == pytest.approx([0.1, 0.1, 0.2, 0.4, 0.5, 0.5])
-    assert Tolerance(cutter_clearance=0.3).for_cutter(1.0).shank_clearance == 0.3
-    assert Tolerance(shank_clearance=0.05).for_cutter(1.0).shank_clearance == 0.05
-    assert Tolerance(shank_share=None).for_cutter(1.0) == Tolerance(shank_share=None)
-    assert Tolerance(0.02).keeping("0.1,0.3,2") == Tolerance(0.02, 0.1, 0.3, 2.0, shank_share=None)
-    once = Tolerance().for_cutter(1.0)
-    assert once.for_cutter(20.0) == once, "what was decided stays"
+    assert Tolerance(cutter_clearance=0.3).for_cutter(0.5).shank_clearance == 0.3
+    assert Tolerance(shank_clearance=0.05).for_cutter(0.5).shank_clearance == 0.05
+    assert Tolerance(shank_share=None).for_cutter(0.5) == Tolerance(shank_share=None)
+    assert Tolerance(0.02).with_clearances("0.1,0.3,2") == Tolerance(0.02, 0.1, 0.3, 2.0, shank_share=None)
+    once = Tolerance().for_cutter(0.5)
+    assert once.for_cutter(10.0) == once, "what was decided stays"
 
 
 def test_the_chord_tolerance_is_a_share_of_scallop_height_and_machining_tolerance() -> None:

@@ -38,9 +38,9 @@ class Tolerance:
     trim : float
         Chord tolerance of trim loops, as a share of the face's diagonal; at most 0.0002 mm, however large the face.
     shank_share : float or None
-        Share of the cutter's diameter that is enough for its shank where it is less than `shank_clearance`, but no less
-        than `cutter_clearance`: the neck of a 1 mm ball end that kept 0.5 mm would stay out of the corners that it is
-        made for.  None: every shank keeps `shank_clearance`.
+        Share of the cutter's diameter that its shank keeps where that is less than `shank_clearance`; never less than
+        `cutter_clearance`.  The neck of a 1 mm ball end that kept 0.5 mm would stay out of the corners that it is made
+        for.  None: every shank keeps `shank_clearance`.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class Tolerance:
         _check_machining(given)
         return cls(gouge=float(given))
 
-    def keeping(self, clearances: Sequence[float] | str) -> "Tolerance":
+    def with_clearances(self, clearances: Sequence[float] | str) -> "Tolerance":
         """The same with other clearances, which every tool keeps.
 
         Parameters
@@ -111,17 +111,17 @@ class Tolerance:
                                "shank and holder, such as 0.1,0.5,1") from reason
         return replace(self, cutter_clearance=cutter, shank_clearance=shank, holder_clearance=holder, shank_share=None)
 
-    def for_cutter(self, diameter: float) -> "Tolerance":
+    def for_cutter(self, radius: float) -> "Tolerance":
         """The same for one cutter: `shank_clearance` is what its shank keeps, and `shank_share` None.
 
         Parameters
         ----------
-        diameter : float
-            mm
+        radius : float
+            Of the cutter, mm.
         """
         if self.shank_share is None:
             return self
-        enough = max(self.shank_share * diameter, self.cutter_clearance)
+        enough = max(2 * self.shank_share * radius, self.cutter_clearance)
         return replace(self, shank_clearance=min(self.shank_clearance, enough), shank_share=None)
 
     def least_angle(self, flat_radius: float) -> float:

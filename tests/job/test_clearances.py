@@ -31,7 +31,7 @@ def groove() -> Part:
     return Part.from_faces([floor, left, right])
 
 
-@pytest.mark.parametrize("tolerance, kept", [(Tolerance(), 0.1), (Tolerance().keeping("0.1,0.5,1"), 0.5)])
+@pytest.mark.parametrize("tolerance, kept", [(Tolerance(), 0.1), (Tolerance().with_clearances("0.1,0.5,1"), 0.5)])
 def test_a_neck_comes_near_a_wall_unless_it_is_told_not_to(tolerance: Tolerance, kept: float) -> None:
     part = groove()
     found = evaluate_axis(part.faces[0], NECKED, (0.0, 0.0, 1.0), 0.05, part=part, tolerance=tolerance)
@@ -43,7 +43,7 @@ def test_a_neck_comes_near_a_wall_unless_it_is_told_not_to(tolerance: Tolerance,
 
 def test_the_judge_asks_for_the_same() -> None:
     part = groove()
-    for tolerance, kept in ((None, 0.1), (Tolerance().keeping((0.1, 0.4, 1.0)), 0.4)):
+    for tolerance, kept in ((None, 0.1), (Tolerance().with_clearances((0.1, 0.4, 1.0)), 0.4)):
         plan = ta.plan(part, NECKED, 0.05, faces=[1], tolerance=tolerance, regions=1, workers=1)
         assert [_task(plan, op).tolerance.shank_clearance for op in plan.operations if op.done] == [kept]
         assert ta.verify(plan).passed

@@ -106,7 +106,7 @@ def test_a_face_that_differs_from_blade_to_blade_is_planned_by_itself_on_every_b
     assert set(found.unlike) < caps and len(found.unlike) == 1
     assert {face.number for face in found.rest} == caps
     assert all(len(blade.numbers) == 2 for blade in found.blades.blades)
-    assert any("have no like on every other one" in warning for warning in found.part.warnings)
+    assert any("have no counterpart on every other blade" in warning for warning in found.part.warnings)
 
 
 def test_sides_that_differ_from_blade_to_blade_are_no_pattern() -> None:
@@ -117,7 +117,7 @@ def test_sides_that_differ_from_blade_to_blade_are_no_pattern() -> None:
     changed = [part.faces[0], Face.from_bspline(points, flip=first.flip), *part.faces[2:]]
     found, notes = find_pattern(Part.from_faces(changed))
     assert found is None
-    assert "no face of another blade is like face 2, a side of the first one" in notes[0]
+    assert "face 2, a side of the first blade, has no counterpart on another blade" in notes[0]
 
 
 @pytest.fixture(scope="module")

@@ -47,7 +47,7 @@ def compare(part: Part, tools: list[Tool], faces: list[Face]) -> np.ndarray:
         drawn = rng.choice(len(cells), min(30, len(cells)), replace=False)
         free = screen_reach(cells, tools, axes, scene)
         for number, tool in enumerate(tools):
-            kept = scene.tolerance.for_cutter(2 * tool.radius)
+            kept = scene.tolerance.for_cutter(tool.radius)
             judge = Feasibility(face, tool, group_surroundings(face, kept, part=part), kept)
             seen = seen_cells(cells, tool, axes, scene.tolerance)
             assert not (free[number] & ~seen).any()

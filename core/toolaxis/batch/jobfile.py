@@ -183,7 +183,7 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
         tolerance = values.get("tolerance", Tolerance())
         values["tolerance"] = replace(tolerance, least_lean=radians(values["least_lean"]))
     if "clearances" in values:
-        values["tolerance"] = values.get("tolerance", Tolerance()).keeping(values["clearances"])
+        values["tolerance"] = values.get("tolerance", Tolerance()).with_clearances(values["clearances"])
     if values.get("limits"):
         parse_limits(values["limits"])
     if "holder" in values:
@@ -304,7 +304,7 @@ def _value(name: str, value: Any, kind: Any) -> Any:
             above = " above zero" if name in _ABOVE_ZERO else ""
             raise InvalidInput(f"{name} is {value!r}: give a finite number{above}")
         return float(value)
-    if kind == "count":
+    if kind in ("count", "clearances"):  # looked at where they are taken
         return value
     if kind == "avoided":
         return numbers_to_avoid(value)
@@ -312,9 +312,6 @@ def _value(name: str, value: Any, kind: Any) -> Any:
         return parse_allowances(value)
     if kind == "margins":
         return format_margins(parse_margins(value))
-    if kind == "clearances":
-        Tolerance().keeping(value)
-        return value
     if kind == "tolerance":
         return Tolerance.of(value)
     if kind is str and name in ("faces", "offset", "holder") and not isinstance(value, str | bool):

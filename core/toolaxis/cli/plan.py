@@ -110,7 +110,7 @@ def _spec(given: Namespace) -> Spec:
 def _tolerance(given: Namespace) -> Tolerance:
     """Tolerances, with the least lean of ball ends and the clearances among them."""
     found = replace(Tolerance.of(given.tolerance), least_lean=radians(given.least_lean))
-    return found.keeping(given.clearances) if given.clearances else found
+    return found.with_clearances(given.clearances) if given.clearances else found
 
 
 def _tools(given: Namespace, spec: Spec) -> Tool | tuple[Tool, ...]:

@@ -211,7 +211,7 @@ def _close(rows: Array, op: Operation, plan: Plan, mounting: Mounting) -> Array:
     """The angles at which the tool does not lean away from the axis that the passes were made and checked for."""
     assert op.path is not None
     tool = op.tool
-    tolerance = plan.inputs.tolerance.for_cutter(2 * tool.radius)
+    tolerance = plan.inputs.tolerance.for_cutter(tool.radius)
     least = min(tolerance.cutter_clearance, tolerance.shank_clearance, tolerance.holder_clearance)
     leans = np.array([float(np.max(angle_between(op.path.axis, mounting.axis_at(row)))) for row in rows])
     shifts, swings = leans * 2 * tool.radius, leans * tool.height

@@ -119,7 +119,7 @@ class ReachScene:
         outlines = list(tool.outlines.items())
         name, top = outlines[-1] if outlines else ("cutter" if tool.half_angle == 0 else "shank", None)
         limits = required.copy()
-        own = self.tolerance.for_cutter(2 * tool.radius)
+        own = self.tolerance.for_cutter(tool.radius)  # `required` is asked of all tools, before one is known
         limits[:, COMPONENTS.index("shank")] -= self.tolerance.shank_clearance - own.shank_clearance
         held = np.isfinite(limits[:, _ABOVE])
         limits[held, _ABOVE] = limits[held, COMPONENTS.index(name)]

@@ -204,9 +204,9 @@ def open_table(plan: Plan) -> Table | None:
     rest = found[_OPEN_ROWS:]
     caption = f"and {len(rest)} more, {sum(one.area for one in rest):.2f} mm2 together" if rest else ""
     places = "1 place stays" if len(found) == 1 else f"{len(found)} places stay"
-    turned = plan.blades is not None and plan.blades.copies
-    where = ", and their like on the turned blades" if turned else ""
-    title = f"{places} open, {sum(one.area for one in found):.2f} mm2{where}"
+    title = f"{places} open, {sum(one.area for one in found):.2f} mm2"
+    if plan.blades is not None and plan.blades.copies:
+        title += "; those of the turned blades are not listed"
     return table(title, _OPEN_COLUMNS, rows, caption)
 
 

@@ -243,7 +243,7 @@ def task(face: Face, tool: Tool, scallop: float, limits: AxisLimits | None = Non
     InvalidInput
         When an argument is out of range.
     """
-    given = Tolerance.of(tolerance).for_cutter(2 * tool.radius)
+    given = Tolerance.of(tolerance).for_cutter(tool.radius)
     pace = pace_of(face, tool, mounting_of(limits), feeds) if objective == "time" else None
     worth = MachiningCost(face, tool, scallop, allowance, objective, pace, passes=passes,
                           greatest_step_over=greatest_step_over, index_length=index_length)

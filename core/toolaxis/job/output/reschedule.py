@@ -133,7 +133,7 @@ def _turning(path: ToolPath, tool: Tool, swing: SwivelAxis) -> RotaryMotion:
 
 def _prove(path: ToolPath, tool: Tool, faces: tuple[Face, ...], depth: float, progress: Progress) -> None:
     """Refuse a path that meets the part: cutter below it, shank or holder too near, or links too near."""
-    tolerance = Tolerance().for_cutter(2 * tool.radius)
+    tolerance = Tolerance().for_cutter(tool.radius)
     far = [tolerance.shank_clearance, tolerance.holder_clearance]
     proof = prove_moving(path, tool, (CheckSurfaces(SKIN, faces, np.array([-depth, *far])),), progress=progress)
     if proof.witness is not None:

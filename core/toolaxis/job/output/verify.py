@@ -168,7 +168,7 @@ def _task_at(plan: Plan, done: Sequence[Operation], place: int) -> VerificationT
 def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
-    tolerance = plan.inputs.tolerance.for_cutter(2 * op.tool.radius)
+    tolerance = plan.inputs.tolerance.for_cutter(op.tool.radius)
     around = group_surroundings(op.face, tolerance, plan.inputs.allowance_of(op.face),
                                 part=plan.part_around(op.face.number),
                                 obstacles=[face for body in plan.obstacles for face in body.faces])

@@ -143,7 +143,7 @@ def tightest(plan: Plan, progress: Progress = NO_PROGRESS) -> ClosestMotion | No
     op = next(op for op in plan.operations if op.number == number)
     obstacles = [face for body in plan.obstacles for face in body.faces]
     best: ClosestMotion | None = None
-    tolerance = plan.inputs.tolerance.for_cutter(2 * op.tool.radius)
+    tolerance = plan.inputs.tolerance.for_cutter(op.tool.radius)
     for group in group_surroundings(op.face, tolerance, plan.inputs.allowance_of(op.face),
                                     part=plan.part_around(op.face.number), obstacles=obstacles):
         if c == 0 and group.role != OTHER:

@@ -49,7 +49,8 @@ class Pattern:
     pieces : dict of int to tuple of Face
         What other bodies of the part leave of the faces that they cover in part or whole, by number.
     unlike : tuple of int
-        Faces of the first blade that have no like on another one: on every blade they are planned by themselves.
+        Faces of the first blade that have no counterpart on some other one: they are planned by themselves, and so are
+        those in their place on all blades.
     """
 
     part: Part
@@ -134,7 +135,7 @@ def pattern_of(part: Part, rotor: Bladed) -> Pattern:
     Raises
     ------
     UnsupportedGeometry
-        When a side of the first blade has no like on another one.
+        When a side of the first blade has no counterpart on another one.
     """
     count = len(rotor.blades)
     own = [{**_name_faces(blade), "hub": ()} for blade in rotor.blades]
@@ -170,7 +171,7 @@ def _keep_alike(rotor: Bladed, own: list[dict[str, tuple[int, ...]]],
     unlike = [n for n in first.faces if any(n not in found for found in matching)]
     sides = [n for n in unlike if n in first.suction + first.pressure]
     if sides:
-        raise UnsupportedGeometry(f"no face of another blade is like face {sides[0]}, a side of the first one")
+        raise UnsupportedGeometry(f"face {sides[0]}, a side of the first blade, has no counterpart on another blade")
     for found in matching:
         for n in unlike:
             found.pop(n, None)
@@ -196,8 +197,8 @@ def _add_warnings(pattern: Pattern) -> Pattern:
         notes.append(f"other bodies divide {len(small)} faces of blades ({min(small)} the first): their smaller "
                      f"pieces, {area:.2f} mm2, are not machined")
     if pattern.unlike:
-        notes.append(f"faces {', '.join(map(str, pattern.unlike))} of the first blade have no like on every other "
-                     "one: such faces are planned by themselves")
+        notes.append(f"faces {', '.join(map(str, pattern.unlike))} of the first blade have no counterpart on every "
+                     "other blade: they are planned by themselves")
     if pattern.stray:
         notes.append(f"faces {', '.join(map(str, pattern.stray))} belong to stray bodies smaller than "
                      f"{_STRAY * pattern.part.diagonal:.1f} mm: they are kept clear of, not machined")

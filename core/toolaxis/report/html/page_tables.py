@@ -127,8 +127,8 @@ def verdict_rows(plan: Plan, verdict: Mapping[str, Any]) -> Rows:
                      number(op["gouge_max"], 4), " / ".join(room), str(len(op["zones"])), str(op["rays"]),
                      "pass" if op["passed"] else "FAIL"])
     allowed, stock = plan.inputs.tolerance, plan.inputs.stock
-    shanks = sorted({allowed.for_cutter(2 * tool.radius).shank_clearance for tool in plan.used_tools})
-    shank = " to ".join(f"{value:g}" for value in dict.fromkeys([*shanks[:1], *shanks[-1:]])) or "-"
+    shanks = sorted({allowed.for_cutter(tool.radius).shank_clearance for tool in plan.used_tools})
+    shank = f"{shanks[0]:g}" if len(shanks) == 1 else f"{shanks[0]:g} to {shanks[-1]:g}"
     besides = f", those of shank, holder and rapid moves from {stock:g} mm of stock" if stock > 0 else ""
     headings = [("operation", False), ("left to clean-up mm²", True), ("scallop left mm", True),
                 ("% of the rest within 1.02 limit", True), ("gouge mm", True),

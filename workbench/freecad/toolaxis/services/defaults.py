@@ -25,12 +25,10 @@ _GAP = 0.6
 def defaults(document, faces, whole=False):
     """Inputs for faces: the first usable tool of a CAM job, else what is preferred, or a bull nose that fits the faces.
 
-    Whole parts get the general rack where neither a CAM job nor the user's preferences name a tool: few parts can be
-    machined with one.
-
     Its diameter follows what most of the area allows, fillets and corners aside, and the gap before the faces; its
     stick-out follows how deep they lie in the part.  The other bodies of the assembly, or part container, of which they
-    are, are to be avoided.
+    are, are to be avoided.  Whole bodies get the general rack where neither a CAM job nor the user's preferences name a
+    tool: few parts can be machined with one.
 
     Parameters
     ----------
