@@ -29,7 +29,24 @@ def hole() -> np.ndarray:
     return np.stack([0.5 + 0.2 * np.cos(t), 0.5 - 0.25 * np.sin(t)], axis=1)
 
 
+def corner(trims: tuple[np.ndarray, ...] = ()) -> Face:
+    """Two walls of a pocket, joined by a corner of 4 mm that is a thirtieth of their length."""
+    plan = np.array([[0.0, 0.0], [68.0, 0.0], [136.0, 0.0], [140.0, 0.0], [140.0, 4.0], [140.0, 38.0], [140.0, 72.0]])
+    net = np.array([[[*place, z] for z in (0.0, 6.0)] for place in plan])
+    weights = np.repeat(np.array([1, 1, 1, np.sqrt(0.5), 1, 1, 1])[:, None], 2, axis=1)
+    knots = [0, 0, 0, 136, 136, 142.3, 142.3, 210.3, 210.3, 210.3]
+    return Face.from_bspline(net, (2, 1), (knots, [0, 0, 1, 1]), weights, trims=trims)
+
+
 OUTER = np.array([[0.05, 0.02], [0.97, 0.1], [0.9, 0.95], [0.4, 0.85], [0.1, 0.9]])
+
+
+def test_a_corner_that_is_short_beside_its_walls_is_not_cut() -> None:
+    """Found: a sub-surface of pocket walls was drawn across the floor, 18 mm off."""
+    strip = np.array([[1.0, 0.4], [209.0, 0.4], [209.0, 0.8], [1.0, 0.8]])
+    for face in (corner(), corner((strip,))):
+        made = triangles(face, 0.3)
+        assert 0 < made.off < 0.3 and len(made.corners) < 400
 
 
 @pytest.mark.parametrize("face", [bump(), bump((OUTER,)), bump((OUTER, hole())), bump(flip=True), barrel()],

@@ -1,6 +1,7 @@
 """Faces as triangles for looking at: as few as keep within a bound of the surface, and how far off they are."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +14,11 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-#: Samples each way at which the bend of a face is looked at, and segments each way at most.
-_LOOKED, _MOST = 17, 160
+#: Samples each way at which the bend of a face is looked at, at least so many between two knots; segments each way at
+#: most.
+_LOOKED, _OF_SPAN, _MOST = 17, 4, 160
+#: Segments on flat stretches are no longer than by this factor, or triangles become slivers.
+_GRADED = 0.3
 #: How often edges of the outline that are not sides of triangles are halved.
 _ROUNDS = 6
 
@@ -49,17 +53,15 @@ def triangles(face: Face, bound: float) -> Triangles:
 
     Notes
     -----
-    The number of triangles follows from the second derivatives at a grid of points; what came of it is measured, see
-    `Triangles.off`.  Sides follow the thinned outline, but for a few that lie closer together than triangles are wide.
+    The number of triangles between two knots follows from the second derivatives at a grid of points there: a joined
+    face may turn a corner within a thirtieth of its length.  What came of it is measured, see `Triangles.off`.  Sides
+    follow the thinned outline, but for a few that lie closer together than triangles are wide.
     """
-    u0, u1, v0, v1 = face.bounds
-    counts, scale = _counts(face, bound)
-    u = np.linspace(u0, u1, counts[0] + 1)
-    v = np.linspace(v0, v1, counts[1] + 1)
+    lines, scale = _lay_lines(face, bound)
     if face.trims:
-        uv, corners = _triangulate_loops(face, (u, v), scale, bound)
+        uv, corners = _triangulate_loops(face, lines, scale, bound)
     else:
-        uv, corners = _whole(u, v)
+        uv, corners = _whole(*lines)
     points = face.evaluate(uv).point
     a, b, c = points[corners.T]
     sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -68,21 +70,53 @@ def triangles(face: Face, bound: float) -> Triangles:
     return Triangles(points, corners[:, ::-1] if face.flip else corners, _off(face, uv, points, corners))
 
 
-def _counts(face: Face, bound: float) -> tuple[tuple[int, int], Array]:
-    """Segments along u and v, and lengths of the unit of u and of v, mm."""
+def _lay_lines(face: Face, bound: float) -> tuple[tuple[Array, Array], Array]:
+    """Lines along u and v between which chords keep within a bound, and lengths of the unit of u and of v, mm."""
     u0, u1, v0, v1 = face.bounds
-    u = np.linspace(u0, u1, _LOOKED)
-    v = np.linspace(v0, v1, _LOOKED)
+    spans = _spans(face.surface.knots_u, u0, u1), _spans(face.surface.knots_v, v0, v1)
+    u, v = (_sample_spans(ends) for ends in spans)
     d = face.evaluate(grid_rows(u, v))
-    spans = np.array([u1 - u0, v1 - v0])
-    bends = np.array([np.linalg.norm(row, axis=1).max() for row in (d.suu, d.svv)]) * spans**2
-    twist = float(np.linalg.norm(d.suv, axis=1).max()) * float(np.prod(spans))
-    # A chord is off by an eighth of the bend over it, a cell's middle by a quarter of the twist: shares of the bound.
-    both = np.maximum(np.sqrt(bends / (8 * 0.4 * bound)), 1.0)
-    both *= max(1.0, np.sqrt(twist / (4 * 0.4 * bound * float(np.prod(both)))))
-    whole = np.clip(np.ceil(both), 2, _MOST).astype(int)
+    bends = [np.linalg.norm(row, axis=1).reshape(len(u), len(v)) for row in (d.suu, d.svv)]
+    counts = (_count_lines(spans[0], u, bends[0].max(axis=1), bound),
+              _count_lines(spans[1], v, bends[1].max(axis=0), bound))
+    # A cell's middle is off by a quarter of its twist.
+    twist = float(np.linalg.norm(d.suv, axis=1).max()) * (u1 - u0) * (v1 - v0)
+    finer = max(1.0, np.sqrt(twist / (4 * 0.4 * bound * counts[0][-1] * counts[1][-1])))
     lengths = np.array([float(np.linalg.norm(row, axis=1).mean()) for row in (d.su, d.sv)])
-    return (int(whole[0]), int(whole[1])), np.maximum(lengths, 1e-12)
+    lines = _place_lines(spans[0], finer * counts[0]), _place_lines(spans[1], finer * counts[1])
+    return lines, np.maximum(lengths, 1e-12)
+
+
+def _spans(knots: Array, low: float, high: float) -> Array:
+    """Ends of the spans between knots in a range, none shorter than a face's lines may lie apart."""
+    least, ends = (high - low) / _MOST, [low]
+    for knot in knots:
+        if knot >= ends[-1] + least and knot <= high - least:
+            ends.append(float(knot))
+    return np.array([*ends, high])
+
+
+def _sample_spans(ends: Array) -> Array:
+    """Places in all spans, their ends among them."""
+    count = max(_OF_SPAN, _LOOKED // (len(ends) - 1))
+    return np.concatenate([*(np.linspace(low, high, count, endpoint=False) for low, high in pairwise(ends)), ends[-1:]])
+
+
+def _count_lines(ends: Array, places: Array, bends: Array, bound: float) -> Array:
+    """How many segments, no whole numbers, lie before the end of each span, for the greatest bends at places in them.
+
+    A chord is off by an eighth of the bend over it: a share of the bound.
+    """
+    within = [bends[(places >= low) & (places <= high)].max() for low, high in pairwise(ends)]
+    density = np.sqrt(np.array(within) / (8 * 0.4 * bound))
+    density = np.maximum(density, max(_GRADED * float(density.max()), 2.0 / (ends[-1] - ends[0])))
+    return np.concatenate([[0.0], np.cumsum(density * np.diff(ends))])
+
+
+def _place_lines(ends: Array, counts: Array) -> Array:
+    """Lines with as many segments in each span as are counted there."""
+    whole = int(min(np.ceil(counts[-1] - 1e-9), _MOST))
+    return np.interp(np.linspace(0.0, counts[-1], whole + 1), counts, ends)
 
 
 def _whole(u: Array, v: Array) -> tuple[Array, Index]:
@@ -104,9 +138,8 @@ def outline_loops(face: Face, bound: float) -> list[Array]:
     face : Face
     bound : float
     """
-    u0, u1, v0, v1 = face.bounds
-    counts, scale = _counts(face, bound)
-    step = ((u1 - u0) / counts[0], (v1 - v0) / counts[1])
+    lines, scale = _lay_lines(face, bound)
+    step = float(np.diff(lines[0]).min()), float(np.diff(lines[1]).min())
     loops = []
     for loop in face.outline:
         dense = walk(loop, stations(loop, step))
@@ -122,7 +155,7 @@ def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, boun
 
     loops = [loop * scale for loop in outline_loops(face, 0.5 * bound)]
     inner = grid_rows(*grid) * scale
-    step = np.array([line[1] - line[0] for line in grid]) * scale
+    step = np.array([np.diff(line).min() for line in grid]) * scale
     inner = inner[inside(slabs(tuple(loops)), inner)]
     origin = np.concatenate(loops).min(axis=0)
     for attempt in range(_ROUNDS + 1):
@@ -145,16 +178,19 @@ def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, boun
     a, b, c = points[corners.T]
     bx, by = (b - a).T
     cx, cy = (c - a).T
-    clockwise = bx * cy - by * cx < 0
-    corners[clockwise] = corners[clockwise][:, ::-1]
-    return points / scale, corners
+    twice = bx * cy - by * cx
+    corners[twice < 0] = corners[twice < 0][:, ::-1]
+    # Points along a straight side of the outline make triangles without width, which a bent face makes wide in space.
+    wide = np.abs(twice) > 1e-9 * np.abs(twice).max(initial=0.0)
+    return points / scale, corners[wide]
 
 
 def _away(points: Array, loops: list[Array], least: float) -> NDArray[np.bool_]:
-    """Which points keep a distance from the vertices of loops."""
+    """Which points keep about a distance from loops: one on a border makes a triangle without width along it."""
     from scipy.spatial import cKDTree
 
-    return np.asarray(cKDTree(np.concatenate(loops)).query(points)[0] > least)
+    dense = np.concatenate([walk(loop, stations(loop, (0.5 * least, 0.5 * least))) for loop in loops])
+    return np.asarray(cKDTree(dense).query(points)[0] > least)
 
 
 def _halve_edges(loop: Array, corners: Index, first: int) -> Array:
