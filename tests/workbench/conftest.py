@@ -154,7 +154,9 @@ class Teller:
 
     def pytest_runtest_logreport(self, report):
         if report.outcome != "passed" or (report.when == "call" and report.nodeid not in self.outcomes):
-            self.outcomes[report.nodeid] = [report.outcome, _tail(str(report.longrepr or ""))]
+            before = self.outcomes.get(report.nodeid, ["", ""])
+            told = [before[1]] if before[0] == "failed" else []  # what comes after a failure does not hide it
+            self.outcomes[report.nodeid] = [report.outcome, "\n".join([*told, _tail(str(report.longrepr or ""))])]
         if report.failed:
             sys.__stdout__.write(f"\n{FAILED}{report.nodeid}\n{self.outcomes[report.nodeid][1]}\n")
             sys.__stdout__.flush()

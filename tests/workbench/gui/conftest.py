@@ -332,9 +332,10 @@ class Desk:
             self.gui.Selection.addSelection(thing.Document.Name, thing.Name, face)
         if thing is not None and not faces:
             self.gui.Selection.addSelection(thing.Document.Name, thing.Name)
-        self.gui.runCommand("ToolAxis_PlanOrientations")
-        self.wait(lambda: self.form("ToolAxisPlan") or self.errors, "the panel opens")
-        assert not self.errors, self.errors
+        before = len(self.reported())
+        self.gui.runCommand("ToolAxis_PlanOrientations")  # what goes wrong in a command stands in the report view alone
+        self.wait(lambda: self.form("ToolAxisPlan") or self.errors or self.reported()[before:], "the panel opens")
+        assert not self.errors and not self.reported()[before:], self.errors or self.reported()[before:]
         return self.form("ToolAxisPlan")
 
     def operation_in(self, document):
