@@ -29,11 +29,14 @@ class Progress:
         Returns True once the user has asked to stop.
     on_offer : callable or None
         Called with a callable that makes an intermediate result; it need not call it.
+    on_piece : callable or None
+        Called with each piece of the result that stands before the whole does.
     """
 
     on_report: Callable[[str, float, float], None] | None = None
     cancelled: Callable[[], bool] | None = None
     on_offer: Callable[[Callable[[], object]], None] | None = None
+    on_piece: Callable[[object], None] | None = None
 
     def check(self) -> None:
         """Stop here if the user asked to.
@@ -76,6 +79,17 @@ class Progress:
         if self.on_offer is not None:
             self.on_offer(make)
 
+    def hand_over(self, piece: object) -> None:
+        """Hand over a piece of the result to whoever wants to see it at once; processes beside this one keep theirs.
+
+        Parameters
+        ----------
+        piece : object
+            What a tool may reach of a face, or an operation.
+        """
+        if self.on_piece is not None:
+            self.on_piece(piece)
+
     def within(self, name: str) -> "Progress":
         """The same for a part of the work: stages are led by its name, the rest is shared.
 
@@ -84,7 +98,7 @@ class Progress:
         name : str
         """
         return Progress(lambda stage, done, total: self.report(f"{name}: {stage}", done, total), self.cancelled,
-                        self.on_offer)
+                        self.on_offer, self.on_piece)
 
 
 class TimeLimit:

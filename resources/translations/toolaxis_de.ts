@@ -283,6 +283,10 @@
    <translation>Maschine {}</translation>
   </message>
   <message>
+   <source>Machined</source>
+   <translation>Bearbeitet</translation>
+  </message>
+  <message>
    <source>Machining time</source>
    <translation>Bearbeitungszeit</translation>
   </message>
@@ -423,6 +427,10 @@
    <translation>Plan</translation>
   </message>
   <message>
+   <source>Plan again for {}</source>
+   <translation>Für {} neu planen</translation>
+  </message>
+  <message>
    <source>Plan orientations</source>
    <translation>Orientierungen planen</translation>
   </message>
@@ -431,16 +439,20 @@
    <translation>Abspielen</translation>
   </message>
   <message>
+   <source>Points: the largest tool that reaches the face there; grey where none does. Lines: finished passes.</source>
+   <translation>Punkte: das größte Werkzeug, das die Fläche dort erreicht; grau, wo es keines gibt. Linien: fertige Bahnen.</translation>
+  </message>
+  <message>
    <source>Press Compute to find the axes.</source>
    <translation>Berechnen findet die Achsen.</translation>
   </message>
   <message>
-   <source>Plan again for {}</source>
-   <translation>Für {} neu planen</translation>
-  </message>
-  <message>
    <source>Raise the part by {}</source>
    <translation>Teil um {} höher setzen</translation>
+  </message>
+  <message>
+   <source>Reaches</source>
+   <translation>Erreicht</translation>
   </message>
   <message>
    <source>Reading the part</source>
@@ -1131,6 +1143,10 @@
    <translation>{}: die bisher betrachteten Achsen</translation>
   </message>
   <message>
+   <source>{}: the largest tool that reaches {} of what was looked at</source>
+   <translation>{}: das größte Werkzeug, das {} des bisher Betrachteten erreicht</translation>
+  </message>
+  <message>
    <source>{}: {} operations</source>
    <translation>{}: {} Operationen</translation>
   </message>
@@ -1174,16 +1190,16 @@
    <translation>NC-Programm neben plan.json und den CL-Dateien, mit Einrichteblatt.</translation>
   </message>
   <message>
+   <source>Opens the planning panel with this machine and place on its table, and computes: axes, passes and collisions are then those of the machine.</source>
+   <translation>Öffnet das Planungsfenster mit dieser Maschine und diesem Platz auf ihrem Tisch und rechnet: Achsen, Bahnen und Kollisionen sind dann die der Maschine.</translation>
+  </message>
+  <message>
    <source>Origin on the table</source>
    <translation>Ursprung auf dem Tisch</translation>
   </message>
   <message>
    <source>Program</source>
    <translation>Programm</translation>
-  </message>
-  <message>
-   <source>Opens the planning panel with this machine and place on its table, and computes: axes, passes and collisions are then those of the machine.</source>
-   <translation>Öffnet das Planungsfenster mit dieser Maschine und diesem Platz auf ihrem Tisch und rechnet: Achsen, Bahnen und Kollisionen sind dann die der Maschine.</translation>
   </message>
   <message>
    <source>Sets the part higher on the table, in Z of its origin, and writes. It may help; only the new program tells.</source>

@@ -20,7 +20,7 @@ from toolaxis.job.planning import pipeline, planner
 from toolaxis.job.planning import rack as rack_planning
 from toolaxis.job.planning.planner import PlanningJob
 from toolaxis.job.planning.rack import RackPlanner
-from toolaxis.job.planning.rack_screening import RackScreening, ScreenedFace
+from toolaxis.job.planning.rack_screening import LargestTools, RackScreening, ScreenedFace
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.job.planning.waiting import WaitingSurface, merge_waiting
 from toolaxis.machine.setup import Mounting
@@ -451,6 +451,32 @@ def test_what_is_in_reach_of_some_tool_is_told_of_a_face(planned: Plan) -> None:
     assert 0.75 * face.area < large < both <= face.area * (1 + 1e-9)
     below = replace(job, limits=intersect_limits(None, "cone:0,0,-1,20"))
     assert RackScreening([below], [face]).reachable(face) == 0.0
+
+
+def test_pieces_of_a_plan_are_handed_over_before_it_is_there() -> None:
+    pieces: list[object] = []
+    made = ta.plan(trough(), TOOLS, SCALLOP, limits=UP, workers=1, progress=Progress(on_piece=pieces.append))
+    seen, *finished = pieces
+    assert isinstance(seen, LargestTools) and seen.area.sum() == pytest.approx(seen.face.area, rel=1e-6)
+    from_middle = abs(seen.point[:, 1] - 12)
+    assert (seen.number[from_middle > 7] == 0).all(), "the sheet is wider than the large ball"
+    assert (seen.number[from_middle < 0.7] == 1).all(), "the hollow has a radius of 2.8 mm, the balls of 5 and 1.5 mm"
+    assert all(isinstance(op, Operation) for op in finished)
+    assert [op.path.cl.tolist() for op in finished] == [op.path.cl.tolist() for op in made.operations if op.done]
+
+
+def test_what_tools_reach_of_a_face_is_told_of_those_that_are_alike() -> None:
+    pieces: list[object] = []
+    one = trough().faces[0]
+    turned = ta.Face.from_bspline(np.stack([-one.surface.control[..., 0] + 60, 80 - one.surface.control[..., 1],
+                                            one.surface.control[..., 2]], axis=-1))
+    ta.plan(Part.from_faces([one, turned]), TOOLS, SCALLOP, limits=UP, workers=1,
+            progress=Progress(on_piece=pieces.append))
+    first, second = (one for one in pieces if isinstance(one, LargestTools))
+    assert {first.face.number, second.face.number} == {1, 2}
+    assert np.allclose(second.point, [60, 80, 0] + first.point * [-1, -1, 1], atol=1e-6)
+    assert np.allclose(second.normal, first.normal * [-1, -1, 1], atol=1e-6)
+    assert (first.number == second.number).all()
 
 
 def test_a_face_that_waits_as_it_is_for_the_next_tool_is_not_screened_again(

@@ -146,7 +146,7 @@ def test_three_clicks_lead_from_a_part_to_its_axes(desk, walk):
     panel = desk.opened[-1]()
     mouse.press(form.compute)
     assert mouse.clicks == 3
-    desk.wait(lambda: panel.view.growing or not form.stop.isEnabled(), "the first map is there")
+    desk.wait(lambda: not panel.growth.empty or not form.stop.isEnabled(), "what tools reach is shown")
     mouse.seen("map")
     if walk != "loft":  # what is there is looked at in other tests
         return

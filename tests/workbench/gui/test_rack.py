@@ -288,11 +288,27 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
 
     document = grooved[0].Document
     before = sorted(thing.Name for thing in document.Objects)
-    desk.computed(form)
+    growth, table, seen = desk.opened[-1]().growth, form.toolTable, set()
+    growth_node = growth._node
+
+    def noted(piece):
+        seen.add((type(piece).__name__, piece.tool.shop_name))
+        return growth_node(piece)
+
+    growth._node = noted
+    desk.press(form.compute)
+    desk.wait(lambda: not growth.empty or form.compute.isEnabled(), "what tools reach is shown")
+    assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Reaches" and table.isVisible()
+    assert form.tabs.currentWidget() is form.resultTab and "largest tool" in form.cost.text()
+    desk.shot("92-growing")
+    desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
+    assert seen == {(kind, tool) for kind in ("SeenCells", "SeenCuts")
+                    for tool in ("Ball D20, 60 out", "Ball D6, 40 out")}, "what each reaches, and its passes"
+    assert growth.empty and growth.root is None, "the plan has taken its place"
+    assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Area"
     assert " machined" in form.message.text() and "with 2 of 2 tools, passes: " in form.message.text()
     assert "mean step-over " in form.message.text() and "axes: " in form.message.text()
     assert "OK puts the plan into the document" in form.message.text()
-    table = form.toolTable
     assert [desk.text(table, row) for row in range(2)] == ["T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
     assert not form.lock.isVisible() and not form.turnFeed.isVisible()
     desk.shot("92-account")

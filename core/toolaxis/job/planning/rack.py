@@ -139,19 +139,9 @@ class RackPlanner:
         alike = self._find_alike(whole)
         originals = [face for k, face in enumerate(whole) if k not in alike]
         copies = {face: tuple(one for one in alike.values() if one.original is face) for face in originals}
-
-        def _look_at(k: int, inner: Progress) -> ScreenedFace:
-            inner.report("choice of tools", k, len(originals))
-            return self._screen.look_at(originals[k], 0)
-
-        found = abreast(_look_at, len(originals), self.jobs[0].workers, progress)
-        if found.cancelled:
-            raise Cancelled("cancelled by the user")
-        for k, why in found.faults.items():
-            faces = (originals[k], *(one.face for one in copies[originals[k]]))
-            self._done += [fail_face(1, face, smallest, why) for face in faces]
-        screened, chains = [originals[k] for k in found.results], [one.chains for one in found.results.values()]
-        self._screen.keep({originals[k]: one for k, one in found.results.items()})
+        found = self._look_at(originals, copies, progress)
+        screened, chains = list(found), [one.chains for one in found.values()]
+        self._screen.keep(found)
         counts = [1 + len(copies[face]) for face in screened]
         every = [one for one, count in zip(chains, counts, strict=True) for _ in range(count)]
         choice = choose_tools(every, CHANGE_SECONDS, self.most)
@@ -164,6 +154,34 @@ class RackPlanner:
         for face, chain, others in zip(screened, chosen, chains, strict=True):
             self._reckoned.add((face, *(one.face for one in copies[face])), chain, others)
         self._wait_or_refuse(screened, chosen, copies, progress)
+
+    def _look_at(self, faces: Sequence[Face], copies: Mapping[Face, tuple[AlikeFace, ...]],
+                 progress: Progress) -> dict[Face, ScreenedFace]:
+        """What the screening says of whole faces; one on which the program fails is done, with its copies."""
+        order = sorted(range(len(faces)), key=lambda k: -faces[k].area)  # who waits wants to see the largest first
+
+        def _screen(place: int, inner: Progress) -> ScreenedFace:
+            inner.report("choice of tools", place, len(faces))
+            face = faces[order[place]]
+            screened = self._screen.look_at(face, 0)
+            self._hand_over(face, screened, copies[face], inner)
+            return screened
+
+        found = abreast(_screen, len(faces), self.jobs[0].workers, progress)
+        if found.cancelled:
+            raise Cancelled("cancelled by the user")
+        for place, why in found.faults.items():
+            failed = faces[order[place]]
+            self._done += [fail_face(1, face, self.jobs[-1].tool, why)
+                           for face in (failed, *(one.face for one in copies[failed]))]
+        return {faces[order[place]]: found.results[place] for place in sorted(found.results, key=order.__getitem__)}
+
+    def _hand_over(self, face: Face, screened: ScreenedFace, copies: Sequence[AlikeFace], progress: Progress) -> None:
+        """Let whoever listens see which tools reach what of a face, and of those that are alike."""
+        if progress.on_piece is not None and screened.reach.shape[2]:
+            found = self._screen.largest_tools(face, screened.reach)
+            for one in (found, *(found.on(alike) for alike in copies)):
+                progress.hand_over(one)
 
     def _wait_or_refuse(self, faces: Sequence[Face], chains: Sequence[ToolChain],
                         copies: Mapping[Face, tuple[AlikeFace, ...]], progress: Progress) -> None:
@@ -252,6 +270,9 @@ class RackPlanner:
             rows = zip(made.operations, origins, rests, following, copied, strict=True)
             for op, origin, rest, chains, copies in rows:
                 self._take_over(op, origin, self._best_of(chains), rest, copies)
+                for one in (op, *copies.values()):
+                    if one.done:
+                        progress.hand_over(one)
             return True
         for op, origin in zip(made.operations, origins, strict=True):
             self._keep_last(op, origin, tool)

@@ -14,8 +14,11 @@ from toolaxis.regions.prices import widths
 from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import FacePrices, ToolChain, chains_of
+from toolaxis.shape.counterparts import apply_motion
 from toolaxis.shape.face import Face
 from toolaxis.shape.nurbs import NurbsSurface
+from toolaxis.skin.alike import AlikeFace
+from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
 
@@ -55,6 +58,34 @@ class ScreenedFace(NamedTuple):
     reach: ReachBits
 
 
+class LargestTools(NamedTuple):
+    """The largest tool that reaches each cell of a face, under any axis, as the screening sees it.
+
+    face : that is screened
+    tools : the larger ones first, k of them
+    point, normal : (n, 3) array, mm, and unit vectors out of the material
+    area : (n,) array, mm^2
+    number : (n,) array of int, of the tool among `tools`; k where none reaches the cell
+    """
+
+    face: Face
+    tools: tuple[Tool, ...]
+    point: Array
+    normal: Array
+    area: Array
+    number: NDArray[np.intp]
+
+    def on(self, alike: AlikeFace) -> "LargestTools":
+        """The same on a face that is alike: other surroundings, which change it, are not looked at.
+
+        Parameters
+        ----------
+        alike : AlikeFace
+        """
+        return self._replace(face=alike.face, point=apply_motion(alike.matrix, self.point),
+                             normal=self.normal @ alike.matrix[:3, :3].T)
+
+
 class RackScreening:
     """What tools reach of faces, and what it takes, as the screening sees it.
 
@@ -92,6 +123,21 @@ class RackScreening:
                                     axes=tuple(axis._replace(axis=int(facing[axis.axis])) for axis in one.axes))
                        for one in chains_of(prices, INDEX_SECONDS))
         return ScreenedFace(chains, ReachBits(begin, held.shape, np.packbits(held)))
+
+    def largest_tools(self, face: Face, reach: ReachBits) -> LargestTools:
+        """Which tools reach what of a face, for a picture of it.
+
+        Parameters
+        ----------
+        face : Face
+        reach : ReachBits
+            Of all tools, as `look_at` found it.
+        """
+        cells = self._cells(face)
+        reached = reach.from_tool(0).any(axis=1)
+        number = np.where(reached.any(axis=0), reached.argmax(axis=0), len(self._jobs))
+        tools = tuple(job.tool for job in self._jobs)
+        return LargestTools(face, tools, cells.point, cells.normal, cells.area, number)
 
     def keep(self, screened: Mapping[Face, ScreenedFace]) -> None:
         """Remember what was found: a face that a tool cannot machine at all waits for the next one as it is.

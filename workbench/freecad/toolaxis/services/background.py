@@ -16,6 +16,7 @@ import gc
 import re
 import sys
 import traceback
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -58,10 +59,12 @@ _running: set["_Thread"] = set()
 class _Thread(QtCore.QThread):
     """Runs a callable(progress); its outcome stays in attributes."""
 
-    def __init__(self, compute: Callable[[Any], Any], digest: Callable[[Any], Any] | None) -> None:
+    def __init__(self, compute: Callable[[Any], Any], digest: Callable[[Any], Any] | None,
+                 digest_piece: Callable[[Any], Any] | None) -> None:
         super().__init__()
-        self.compute, self.digest = compute, digest
+        self.compute, self.digest, self.digest_piece = compute, digest, digest_piece
         self.interim: Any = None
+        self.pieces: deque[Any] = deque()
         self.taken = -_PACE
         self.stop = Event()
         self.latest: tuple[str, float, float] | None = None
@@ -81,7 +84,8 @@ class _Thread(QtCore.QThread):
             return
         try:
             offered = None if self.digest is None else self._offered
-            self.result = self.compute(Progress(self._report, self.stop.is_set, offered))
+            handed = None if self.digest_piece is None else self._handed_over
+            self.result = self.compute(Progress(self._report, self.stop.is_set, offered, handed))
         except Cancelled:
             self.stopped = True
         except ToolAxisError as reason:
@@ -102,6 +106,10 @@ class _Thread(QtCore.QThread):
             digested = self.digest(make())
             if digested is not None:
                 self.interim, self.taken = digested, monotonic()
+
+    def _handed_over(self, piece: Any) -> None:
+        if self.digest_piece is not None:
+            self.pieces.append(self.digest_piece(piece))
 
 
 @cache
@@ -224,12 +232,16 @@ class BackgroundWork(QtCore.QObject):
     parent : QObject, optional
     digest : callable, optional
         Makes of an intermediate result, in the other thread, what `interim` is emitted with; None for nothing yet.
+    digest_piece : callable, optional
+        Makes of a piece of the result, in the other thread, what is emitted with `pieces`.
     """
 
     progressed = QtCore.Signal(str, float)
     """Stage, and the share that is done, 0 to 1; negative where it is not known."""
     interim = QtCore.Signal(object)
     """An intermediate result, digested."""
+    pieces = QtCore.Signal(object)
+    """Pieces of the result that were handed over since the last time, digested: a list."""
     done = QtCore.Signal(object)
     """What the callable returned."""
     failed = QtCore.Signal(str)
@@ -237,9 +249,10 @@ class BackgroundWork(QtCore.QObject):
     cancelled = QtCore.Signal()
 
     def __init__(self, compute: Callable[[Any], Any], parent: QtCore.QObject | None = None,
-                 digest: Callable[[Any], Any] | None = None) -> None:
+                 digest: Callable[[Any], Any] | None = None,
+                 digest_piece: Callable[[Any], Any] | None = None) -> None:
         super().__init__(parent)
-        self._thread = _Thread(compute, digest)
+        self._thread = _Thread(compute, digest, digest_piece)
         self._thread.finished.connect(self._ended)
         self._timer = QtCore.QTimer(self)
         self._timer.setInterval(_TICK)
@@ -281,6 +294,9 @@ class BackgroundWork(QtCore.QObject):
         interim, self._thread.interim = self._thread.interim, None
         if interim is not None:
             self.interim.emit(interim)
+        waiting = self._thread.pieces
+        if waiting:
+            self.pieces.emit([waiting.popleft() for _ in range(len(waiting))])
         latest = self._thread.latest
         if latest is None or latest == self._told:
             return

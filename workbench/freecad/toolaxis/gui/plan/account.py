@@ -1,5 +1,7 @@
 """The account of a part that was planned with several tools, as a headline and as a table of the tools."""
 
+from dataclasses import dataclass
+
 import FreeCAD
 from freecad.toolaxis.document.tool_colours import tool_colour
 from freecad.toolaxis.gui.widgets.quantity import area_text, length_text, number_text
@@ -79,22 +81,72 @@ def fill_tools(table, account):
         table.setRowCount(0)
         return
     heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Area"), translate("ToolAxis", "Time")]
+    rows = [(f"T{one.number} {one.name}", percent(one.area, account.area), clock(one.seconds))
+            for one in account.tools]
+    rows.append((translate("ToolAxis", "changes of tool and axis"), "", clock(account.between)))
+    rows.append((translate("ToolAxis", "total"), percent(account.machined, account.area), clock(account.seconds)))
+    told = [translate("ToolAxis", "{}: {} operations").format(rows[i][0], one.operations)
+            for i, one in enumerate(account.tools)]
+    _fill(table, heads, rows, [tool_colour(one.place) for one in account.tools], told)
+
+
+@dataclass
+class ReachedByTool:
+    """What a tool reaches of the faces, and machines of them, as far as it is known while a plan is made.
+
+    Attributes
+    ----------
+    colour : (r, g, b)
+        From 0 to 1.
+    number : int
+        Place in the magazine.
+    name : str
+    reached : float
+        mm^2 for which it is the largest tool that reaches them.
+    machined : float
+        mm^2
+    """
+
+    colour: tuple
+    number: int
+    name: str
+    reached: float
+    machined: float
+
+
+def fill_reached(table, tools, area):
+    """Show what tools reach and machine while a plan is made.
+
+    Parameters
+    ----------
+    table : QTableWidget
+    tools : sequence of ReachedByTool
+    area : float
+        mm^2 that were looked at.
+    """
+    table.setVisible(bool(tools))
+    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Reaches"), translate("ToolAxis", "Machined")]
+    rows = [(f"T{one.number} {one.name}", percent(one.reached, area),
+             percent(one.machined, area) if one.machined else "") for one in tools]
+    told = [translate("ToolAxis", "{}: the largest tool that reaches {} of what was looked at").format(*row[:2])
+            for row in rows]
+    _fill(table, heads, rows, [one.colour for one in tools], told)
+
+
+def _fill(table, heads, rows, colours, told):
+    """Fill a table whose first rows are tools, with their colours and what is told of them when pointed at."""
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
     table.setColumnCount(len(heads))
     table.setHorizontalHeaderLabels(heads)
     table.verticalHeader().setVisible(False)
-    rows = [(f"T{one.number} {one.name}", percent(one.area, account.area), clock(one.seconds))
-            for one in account.tools]
-    rows.append((translate("ToolAxis", "changes of tool and axis"), "", clock(account.between)))
-    rows.append((translate("ToolAxis", "total"), percent(account.machined, account.area), clock(account.seconds)))
+    table.setRowCount(0)  # colours of rows that were there before
     table.setRowCount(len(rows))
     for i, cells in enumerate(rows):
         for k, text in enumerate(cells):
             put(table, i, k, text, text)
-    for i, one in enumerate(account.tools):
-        told = translate("ToolAxis", "{}: {} operations").format(rows[i][0], one.operations)
-        put(table, i, 0, rows[i][0], told, DecorationRole=QtGui.QColor.fromRgbF(*tool_colour(one.place)))
+    for i, (colour, text) in enumerate(zip(colours, told, strict=True)):
+        put(table, i, 0, rows[i][0], text, DecorationRole=QtGui.QColor.fromRgbF(*colour))
     head = table.horizontalHeader()
     for k in range(1, len(heads)):
         head.setSectionResizeMode(k, QtWidgets.QHeaderView.ResizeToContents)

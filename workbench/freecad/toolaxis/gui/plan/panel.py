@@ -16,6 +16,7 @@ from freecad.toolaxis.gui.pictures.window import show_pictures
 from freecad.toolaxis.gui.plan.account import headline
 from freecad.toolaxis.gui.plan.face_choice import FaceChoice
 from freecad.toolaxis.gui.plan.form import PlanForm
+from freecad.toolaxis.gui.plan.growth import RackGrowth, digest_piece
 from freecad.toolaxis.gui.plan.locks import AxisLocks
 from freecad.toolaxis.gui.plan.move_origin import move_origin
 from freecad.toolaxis.gui.plan.outcome import outcome_sentence
@@ -71,6 +72,7 @@ class PlanPanel(Panel):
         self.preview = Preview(document)
         self.setup_preview = SetupPreview(document, self.form, self.fields.setup)
         self.view = AxisView(self.form, self.preview)
+        self.growth = RackGrowth(document, self.form.toolTable)
         self.player = PlanPlayer(document, self.form, self.preview)
         self.remedies = RemedyRow(self.form)
         self.choice = FaceChoice(document, self.form, self.fields)
@@ -259,9 +261,10 @@ class PlanPanel(Panel):
             return
         titles = titles_of(inputs)
         self.choice.begin(inputs)
-        self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing)
+        self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing, digest_piece)
         known = {} if inputs.rack else titles
         self.work.interim.connect(lambda found: self._growing(*found, known))
+        self.work.pieces.connect(self._pieces_found)
         self.work.progressed.connect(self.ongoing.report)
         self.work.progressed.connect(self._light)
         self.work.done.connect(lambda found: self._computed(inputs, *found, titles))
@@ -351,15 +354,28 @@ class PlanPanel(Panel):
     def _growing(self, picture, face, titles):
         """The map of the axes looked at so far for one of the faces."""
         if self.work is not None:
-            if not self.view.growing:
+            if not self.view.growing and self.growth.empty:
                 self.form.tabs.setCurrentWidget(self.form.resultTab)
             self.view.show_growing(picture, face, titles)
+
+    def _pieces_found(self, pieces):
+        """What tools reach, and finished passes, while a rack is planned."""
+        if self.work is not None:
+            if self.growth.empty:
+                self.view.begin_growing()
+                self.form.tabs.setCurrentWidget(self.form.resultTab)
+            self.growth.add(pieces)
+            if not self.view.growing:
+                told = translate("ToolAxis", "Points: the largest tool that reaches the face there; grey where none "
+                                             "does. Lines: finished passes.")
+                self.form.cost.setText(told)
 
     def _light(self, stage, _):
         self.choice.light(stage)
 
     def _computed(self, inputs, plan, pictures, titles):
         self.work = None
+        self.growth.clear()
         if not plan.operations:
             self._not_computed("")
             return
@@ -379,6 +395,7 @@ class PlanPanel(Panel):
 
     def _not_computed(self, message):
         self.work = None
+        self.growth.clear()
         self.form.faces.clearSelection()
         self.problem = message
         if self.view.plan is None:
@@ -419,6 +436,7 @@ class PlanPanel(Panel):
     def _forget_view(self):
         self.player.forget()
         self.preview.forget()
+        self.growth.forget()
         self.setup_preview.forget()
 
     def _let_go(self):
@@ -426,6 +444,7 @@ class PlanPanel(Panel):
         self.player.close()
         self.view.leave()
         self.preview.clear()
+        self.growth.clear()
         self.setup_preview.clear()
 
 

@@ -228,13 +228,28 @@ def _cuts(path, colour, width):
     return node
 
 
+def contact_lines(path):
+    """Where the tool touches the face as it cuts, (k, 3) arrays, mm.
+
+    Parameters
+    ----------
+    path : toolaxis.cldata.toolpath.ToolPath
+    """
+    return [path.cc[run] for run in _slices(path, True)]
+
+
 def _runs(path, cutting):
-    """Polylines of a path where the tool cuts, or where it does not."""
+    """Polylines of a path's tip where the tool cuts, or where it does not."""
+    return [path.cl[run] for run in _slices(path, cutting)]
+
+
+def _slices(path, cutting):
+    """Points of a path between which the tool cuts, or between which it does not."""
     from toolaxis.cldata.toolpath import Motion
 
     cut = np.asarray(path.kind[1:]) == Motion.CUT
     bounds = np.concatenate([[0], np.flatnonzero(np.diff(cut)) + 1, [len(cut)]])
-    return [path.cl[i:j + 1] for i, j in pairwise(bounds) if j > i and cut[i] == cutting]
+    return [slice(i, j + 1) for i, j in pairwise(bounds) if j > i and cut[i] == cutting]
 
 
 def _axes(op):

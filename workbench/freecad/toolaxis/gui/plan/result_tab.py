@@ -127,8 +127,13 @@ class AxisView(QtCore.QObject):
         combo.blockSignals(blocked)
         combo.setVisible(len(names) > 1)
 
+    def begin_growing(self):
+        """Something of the next plan is about to be shown: the last one disappears."""
+        if self.plan is not None:
+            self.clear()
+
     def show_growing(self, picture, face, titles):
-        """Show the map of a search that goes on, unless the user looks at another face's; the last plan disappears.
+        """Show the map of a search that goes on, unless the user looks at another face's.
 
         Parameters
         ----------
@@ -138,8 +143,8 @@ class AxisView(QtCore.QObject):
         titles : dict of int to str
             What all the faces are called, by their numbers, in their order; skins come to them one by one.
         """
+        self.begin_growing()
         if not self.growing:
-            self.clear()
             self.titles, self.growing, self.computed = titles, dict.fromkeys(titles), None
         shown = self._grown
         self.growing[face.number] = picture, title_of(face, titles)
