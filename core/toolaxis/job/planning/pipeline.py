@@ -223,27 +223,22 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         cutter, None if mounting is None else mounting.machine, method, objective,
         None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
         least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over), lead=float(lead)))
-    method = chosen.name if chosen.moves else method
     short = limits or (machine if mounting is None else None)
-    words = short if isinstance(short, str) else format_limits(allowed)
-    inputs = PlanInputs(float(scallop), float(allowance), method, objective, direction, words,
-                        FEEDRATE if feedrate is None else float(feedrate),
-                        SPINDLE if spindle is None else float(spindle), limits_kept, float(rapid),
-                        chosen.roughness if roughness is None else float(roughness), float(limit), passes,
-                        numbers_to_avoid(avoid), held, float(stock), float(greatest_step_over),
-                        parse_allowances(allowance_on), float(lead), origin,
-                        format_margins(parse_margins(stock_box)))
-    if objective == "time":
-        require_machine_limits(mounting)
-    if len(rack.tools) > 1:
-        inputs.check_rack(rack.tools)
-    else:
-        inputs.check_tool(cutter)
+    inputs = PlanInputs(
+        scallop=float(scallop), allowance=float(allowance), method=chosen.name if chosen.moves else method,
+        objective=objective, direction=direction, limits=short if isinstance(short, str) else format_limits(allowed),
+        feedrate=FEEDRATE if feedrate is None else float(feedrate),
+        spindle=SPINDLE if spindle is None else float(spindle), tolerance=limits_kept, rapid=float(rapid),
+        roughness=chosen.roughness if roughness is None else float(roughness), limit=float(limit), passes=passes,
+        avoid=numbers_to_avoid(avoid), held=held, stock=float(stock), greatest_step_over=float(greatest_step_over),
+        allowance_on=parse_allowances(allowance_on), lead=float(lead), origin=origin,
+        stock_box=format_margins(parse_margins(stock_box)))
+    _check_tools(inputs, rack, mounting)
     loaded = inputs.prepare_part(load(part))
     inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
     check_not_avoided(loaded, (loaded.face(one.face) for one in given))
     if len(rack.tools) > 1:
-        check_rack_inputs(RackInputs(method, chosen.moves, regions, orientations is not None, bool(given),
+        check_rack_inputs(RackInputs(inputs.method, chosen.moves, regions, orientations is not None, bool(given),
                                      compare))
     loaded, numbers, pattern = _join_faces(loaded, faces, rack, chosen, progress)
     loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
@@ -252,24 +247,38 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         _check_held_side(given, chosen)
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     chosen_faces = choose_faces(loaded, numbers)
-    if loaded.allowances is not None:
-        for face in loaded.faces:
-            loaded.allowances.check_alike(face)
-    if inputs.stock > 0:
-        loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
+    loaded = _with_what_is_left(loaded, chosen_faces, inputs.stock)
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, datum_of(inputs, datum, loaded), regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     free, in_clamping = cut_faces(loaded, chosen_faces)
     with use_cores(workers):
         if len(rack.tools) > 1:
-            whole_part = None if pattern is None else replace(pattern, part=loaded)
             jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=regions != 1)
                     for tool in rack.tools]
+            whole_part = None if pattern is None else replace(pattern, part=loaded)
             made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
         else:
-            whole = faces is None and _is_untouched(loaded) and method in METHODS
+            whole = faces is None and _is_untouched(loaded) and inputs.method in METHODS
             made = _plan_part(job, free, (whole, compare), progress)
         return _tell_apart(_order_operations(made, progress), free, in_clamping)
+
+
+def _check_tools(inputs: PlanInputs, rack: ToolLibrary, mounting: Mounting | None) -> None:
+    """That tools and machine allow what is asked for."""
+    if inputs.objective == "time":
+        require_machine_limits(mounting)
+    if len(rack.tools) > 1:
+        inputs.check_rack(rack.tools)
+    else:
+        inputs.check_tool(rack.tools[0])
+
+
+def _with_what_is_left(part: Part, faces: Sequence[Face], stock: float) -> Part:
+    """A part with the stock that roughing left on faces, mm; skins have one allowance each."""
+    if part.allowances is not None:
+        for face in part.faces:
+            part.allowances.check_alike(face)
+    return part.with_stock(stock, (number for face in faces for number in face.numbers)) if stock > 0 else part
 
 
 def _join_faces(part: Part, faces: Sequence[int | Sequence[int]] | str | None, rack: ToolLibrary, chosen: Strategy,
