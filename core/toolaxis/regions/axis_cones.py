@@ -89,13 +89,14 @@ class CellCones(NamedTuple):
         """Some of the pairs."""
         return CellCones(self.cell[rows], self.cones.pick(rows))
 
+    def blocks(self, most: int) -> "list[CellCones]":
+        """These pairs in lists of so many at most, none of them empty."""
+        return [self.pick(np.arange(first, min(first + most, len(self.cell))))
+                for first in range(0, len(self.cell), most)]
+
     def halve(self) -> "CellCones":
         """Four pairs in place of each, with its cone halved each way."""
         return CellCones(np.repeat(self.cell, 4), self.cones.halve())
-
-    def join(self, others: "CellCones") -> "CellCones":
-        """These pairs and others."""
-        return CellCones.join_all([self, others])
 
     @staticmethod
     def join_all(parts: Sequence["CellCones"]) -> "CellCones":

@@ -6,6 +6,7 @@ distance at each height.  Where the tool in the middle gouges, or meets somethin
 them.  What is not decided is halved: the cone or the cell, whichever leaves more room.
 """
 
+from collections import deque
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -32,6 +33,8 @@ Indices = NDArray[np.int64]
 _HALVINGS, _MOST_CELLS = 4, 6000
 #: Radius of cones that are not halved any more, rad, and pairs of a cell and a cone that are tried for a face in all.
 _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
+#: Pairs that are looked at together: many more take gigabytes.
+_AT_ONCE = 200_000
 #: Pairs in place of which one more cone of lines may be looked along, and how many may be in any case.
 _PAIRS_FOR_CONE, _FEWEST_CONES = 150, 500
 #: Pairs in place of which one cell may be looked at for corners alone, and how many may be in any case; largest ones of
@@ -109,7 +112,8 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
         reached += float(cells.area[met].sum())
         found.append(cells.rectangles[surely | closed])
         left = np.flatnonzero(open_ & ~met)
-        if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried > most_pairs:
+        waiting = sum(len(proof.pairs.cell) for proof in proofs)  # each is looked at four times when its cell is halved
+        if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried + waiting > most_pairs:
             break
         cells, parent = halve_rectangles(face, cells.pick(left))
         for proof in proofs:
@@ -181,14 +185,16 @@ class _Proof:
         waiting = self.pairs.pick(~surely[self.pairs.cell])
         now = asked & ~narrow
         kept, waiting = waiting.pick(~now[waiting.cell]), waiting.pick(now[waiting.cell])
-        tried = 0
-        while len(waiting.cell) and tried <= most:
+        decided, blocks, tried = [kept], deque(waiting.blocks(_AT_ONCE)), 0
+        while blocks and tried <= most:
             breathe()
-            waiting = waiting.pick(self._may_touch(cells, waiting) & ~met[waiting.cell])
-            tried += len(waiting.cell)
-            open_, wide = self._try(cells, waiting, met)
-            kept, waiting = kept.join(open_.pick(~wide)), open_.pick(wide).halve()
-        kept = kept.join(waiting)
+            block = blocks.popleft()
+            block = block.pick(self._may_touch(cells, block) & ~met[block.cell])
+            tried += len(block.cell)
+            open_, wide = self._try(cells, block, met)
+            decided.append(open_.pick(~wide))
+            blocks.extend(open_.pick(wide).halve().blocks(_AT_ONCE))
+        kept = CellCones.join_all([*decided, *blocks])
         self.pairs = kept.pick(~met[kept.cell])
         return tried
 

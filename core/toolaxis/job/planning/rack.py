@@ -259,7 +259,7 @@ class RackPlanner:
         self._waiting = [one for one in self._waiting if one.tool != tool]
         targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
-        job = replace(self.jobs[tool], known_axes=self._axes_under(tool))
+        job = replace(self.jobs[tool], known_axes=self._axes_under(tool), rest_pace=self._rest_pace(tool))
         made = job.plan_pieces(targets, self._screen.scene, progress)
         self._faults += made.faults
         origins = [find_origin(op.face, now) for op in made.operations]
@@ -296,6 +296,13 @@ class RackPlanner:
         axis = self._screen.axis(number)
         turned = [axis, *(alike.matrix[:3, :3] @ axis for alike in one.copies)]
         return len(np.unique(np.round(turned, 6) + 0.0, axis=0)) - 1
+
+    def _rest_pace(self, tool: int) -> float:
+        """Area that the slowest of the smaller tools machines of a plane in a second, mm^2/s; 0 without one."""
+        inputs = self.jobs[0].inputs
+        smaller = [self.jobs[k].tool for k in self._allowed if k > tool]
+        return min((float(np.sqrt(8 * one.radius * inputs.scallop)) * inputs.at_rates_of(one).feedrate / 60
+                    for one in smaller), default=0.0)
 
     def _axes_under(self, tool: int) -> tuple[Array, ...]:
         """The axes under which a tool machines something already."""
