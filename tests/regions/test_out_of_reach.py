@@ -10,6 +10,7 @@ from toolaxis.feasibility.feasibility import Feasibility
 from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.machine.limits import Cone
 from toolaxis.numeric.vectors import angle_between, unit
+from toolaxis.regions import out_of_reach
 from toolaxis.regions.axis_cones import first_cones
 from toolaxis.regions.out_of_reach import OutOfReach, prove_out_of_reach
 from toolaxis.regions.scene import ReachScene
@@ -134,6 +135,22 @@ def test_a_longer_proof_finds_no_less_and_a_short_one_claims_little(slot: ReachS
     side = wall_of(slot)
     areas = [*(prove_out_of_reach(side, [BALL], slot, most).area for most in (1000, 100_000)), long_proof.area]
     assert areas == sorted(areas) and areas[0] < 0.6 * areas[-1]
+
+
+def test_no_more_pairs_are_looked_at_than_may_be(slot: ReachScene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found: the tip of a wing took 6 GB, as all pairs that waited were looked at once more when few were left to try.
+    """
+    seen: list[int] = []
+    look = out_of_reach._Proof._may_touch
+    monkeypatch.setattr(out_of_reach, "_AT_ONCE", 700)
+    monkeypatch.setattr(out_of_reach._Proof, "_may_touch",
+                        lambda proof, cells, pairs: (seen.append(len(pairs.cell)), look(proof, cells, pairs))[1])
+    tried: list[int] = []
+    close = out_of_reach._Proof.close
+    monkeypatch.setattr(out_of_reach._Proof, "close", lambda *given: (tried.append(close(*given)), tried[-1])[1])
+    found = prove_out_of_reach(wall_of(slot), [BALL], slot, 20_000)
+    assert max(seen) <= 700 and 10_000 < sum(tried) <= 20_000 + 700
+    assert found.area > 0
 
 
 def block_with_pits(seed: int) -> Part:
