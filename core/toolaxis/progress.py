@@ -30,7 +30,8 @@ class Progress:
     on_offer : callable or None
         Called with a callable that makes an intermediate result; it need not call it.
     on_piece : callable or None
-        Called with each piece of the result that stands before the whole does.
+        Called with each part of the result as soon as it is known: what tools reach of a face, or an operation.
+        Processes that plan side by side do not call it.
     """
 
     on_report: Callable[[str, float, float], None] | None = None
@@ -80,12 +81,12 @@ class Progress:
             self.on_offer(make)
 
     def hand_over(self, piece: object) -> None:
-        """Hand over a piece of the result to whoever wants to see it at once; processes beside this one keep theirs.
+        """Hand over a part of the result to whoever wants to see it at once.
 
         Parameters
         ----------
         piece : object
-            What a tool may reach of a face, or an operation.
+            What tools reach of a face, or an operation.
         """
         if self.on_piece is not None:
             self.on_piece(piece)

@@ -39,6 +39,18 @@
    <translation>Gegenüber der besten Achse: {:+d} Bahnen, {:+.1f} % Schnittlänge, {:+.1f} % Streifenbreite.</translation>
   </message>
   <message>
+   <source>All operations use a moving tool axis. Choose their machine in the planning panel, tab Job.</source>
+   <translation>Bei allen Operationen bewegt sich die Werkzeugachse beim Fräsen. Die Maschine in der Planung auf dem Reiter Auftrag wählen.</translation>
+  </message>
+  <message>
+   <source>All tool axes can be reached. Axis travels not checked: the tool has no holder.</source>
+   <translation>Alle Werkzeugachsen sind erreichbar. Verfahrwege nicht geprüft: Das Werkzeug hat keinen Halter.</translation>
+  </message>
+  <message>
+   <source>All tool axes can be reached. OK adds the machine to the document.</source>
+   <translation>Alle Werkzeugachsen sind erreichbar. OK übernimmt die Maschine in das Dokument.</translation>
+  </message>
+  <message>
    <source>Any number of tools</source>
    <translation>Beliebig viele Werkzeuge</translation>
   </message>
@@ -89,6 +101,10 @@
   <message>
    <source>Click on the map to try an axis.</source>
    <translation>Ein Klick in die Karte probiert eine Achse aus.</translation>
+  </message>
+  <message>
+   <source>Collision: {}; {} mm deep</source>
+   <translation>Kollision: {}; {} mm tief</translation>
   </message>
   <message>
    <source>Collisions could not be looked for: {}</source>
@@ -147,20 +163,16 @@
    <translation>Schätzung und Zählung</translation>
   </message>
   <message>
-   <source>Every axis can be held. OK puts the machine into the document.</source>
-   <translation>Jede Achse kann gehalten werden. OK stellt die Maschine ins Dokument.</translation>
-  </message>
-  <message>
-   <source>Every axis can be held. Travels are not looked at: the tool has no holder.</source>
-   <translation>Jede Achse kann gehalten werden. Verfahrwege werden nicht geprüft: das Werkzeug hat keinen Halter.</translation>
-  </message>
-  <message>
-   <source>Every face has an axis, but two-point contact has one contact everywhere; the reasons are on the tab Axis. OK puts them into the document.</source>
-   <translation>Jede Fläche hat eine Achse, aber überall nur eine Berührung statt zweier; die Gründe stehen auf dem Reiter Achse. OK stellt sie ins Dokument.</translation>
+   <source>Every face has an axis, but two-point contact was not possible anywhere (reasons: tab Axis). OK adds the operations to the document.</source>
+   <translation>Jede Fläche hat eine Achse, aber Zwei-Punkt-Kontakt war nirgends möglich (Gründe: Reiter Achse). OK übernimmt die Operationen in das Dokument.</translation>
   </message>
   <message>
    <source>Every face has an axis. {} OK puts them into the document.</source>
    <translation>Jede Fläche hat eine Achse. {} OK stellt sie ins Dokument.</translation>
+  </message>
+  <message>
+   <source>Excess over ideal length</source>
+   <translation>Mehrlänge gegenüber Ideal</translation>
   </message>
   <message>
    <source>Export</source>
@@ -243,8 +255,12 @@
    <translation>Auftrag {}</translation>
   </message>
   <message>
-   <source>Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab Limits.</source>
-   <translation>Hält Rauheit und Streifenbreite ein, die Drehachsen drehen am wenigsten. Braucht einen Torusfräser und eine Maschine auf der Karte Grenzen.</translation>
+   <source>Keeps to the roughness and strip width with the least rotary motion. Needs a bull nose and a machine (tab Job).</source>
+   <translation>Hält Rauheit und Streifenbreite mit möglichst wenig Drehachsbewegung ein. Braucht einen Torusfräser und eine Maschine (Reiter Auftrag).</translation>
+  </message>
+  <message>
+   <source>Largest for</source>
+   <translation>Größtes auf</translation>
   </message>
   <message>
    <source>Lean from the normal, mean</source>
@@ -311,6 +327,10 @@
    <translation>Keine Achse ist frei.</translation>
   </message>
   <message>
+   <source>No collisions along the passes (checked: {})</source>
+   <translation>Keine Kollisionen entlang der Bahnen (geprüft: {})</translation>
+  </message>
+  <message>
    <source>No collisions found.</source>
    <translation>Keine Kollisionen gefunden.</translation>
   </message>
@@ -339,12 +359,8 @@
    <translation>Nicht geprüft: {}.</translation>
   </message>
   <message>
-   <source>Not held by this machine: {}</source>
-   <translation>Von dieser Maschine nicht zu halten: {}</translation>
-  </message>
-  <message>
-   <source>Not in the jobs, for want of an axis: {}</source>
-   <translation>Nicht in den Aufträgen, weil eine Achse fehlt: {}</translation>
+   <source>Not in the jobs (no tool axis): {}</source>
+   <translation>Nicht in den Aufträgen (keine Werkzeugachse): {}</translation>
   </message>
   <message>
    <source>Not inside tolerance: {}</source>
@@ -353,14 +369,6 @@
   <message>
    <source>Nothing is selected: select faces or a body in the 3D view first</source>
    <translation>Nichts ist ausgewählt: bitte zuerst Flächen oder einen Körper in der 3D-Ansicht auswählen</translation>
-  </message>
-  <message>
-   <source>Nothing meets along the passes; looked at: {}</source>
-   <translation>Entlang der Bahnen stößt nichts zusammen; betrachtet: {}</translation>
-  </message>
-  <message>
-   <source>Of the rest within {}</source>
-   <translation>Vom Rest innerhalb {}</translation>
   </message>
   <message>
    <source>On the machine</source>
@@ -375,8 +383,8 @@
    <translation>Auf {}</translation>
   </message>
   <message>
-   <source>One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits.</source>
-   <translation>Eine Drehachse ist geklemmt, die andere dreht längs der Bahnen. Braucht eine Maschine auf der Karte Grenzen.</translation>
+   <source>One rotary axis is clamped, the other rotates along the passes. Needs a machine (tab Job).</source>
+   <translation>Eine Drehachse ist geklemmt, die andere dreht entlang der Bahnen. Braucht eine Maschine (Reiter Auftrag).</translation>
   </message>
   <message>
    <source>Operations: {}. plan.json and their CL files are written.</source>
@@ -399,10 +407,6 @@
    <translation>Ergebnis</translation>
   </message>
   <message>
-   <source>Over the ideal length</source>
-   <translation>Über der idealen Länge</translation>
-  </message>
-  <message>
    <source>Passes</source>
    <translation>Bahnen</translation>
   </message>
@@ -416,7 +420,7 @@
   </message>
   <message>
    <source>Pause</source>
-   <translation>Anhalten</translation>
+   <translation>Pause</translation>
   </message>
   <message>
    <source>Pictures of the plan</source>
@@ -439,8 +443,8 @@
    <translation>Abspielen</translation>
   </message>
   <message>
-   <source>Points: the largest tool that reaches the face there; grey where none does. Lines: finished passes.</source>
-   <translation>Punkte: das größte Werkzeug, das die Fläche dort erreicht; grau, wo es keines gibt. Linien: fertige Bahnen.</translation>
+   <source>Points: the largest tool that was found to reach the face there, grey where none was found so far; an estimate. Lines: finished passes.</source>
+   <translation>Punkte: das größte Werkzeug, für das die Fläche dort erreichbar scheint, grau, wo bisher keines gefunden wurde; eine Schätzung. Linien: fertige Bahnen.</translation>
   </message>
   <message>
    <source>Press Compute to find the axes.</source>
@@ -449,10 +453,6 @@
   <message>
    <source>Raise the part by {}</source>
    <translation>Teil um {} höher setzen</translation>
-  </message>
-  <message>
-   <source>Reaches</source>
-   <translation>Erreicht</translation>
   </message>
   <message>
    <source>Reading the part</source>
@@ -467,8 +467,8 @@
    <translation>Material wird abgetragen</translation>
   </message>
   <message>
-   <source>Results hold; verdict: {}</source>
-   <translation>Die Ergebnisse gelten; Urteil: {}</translation>
+   <source>Results up to date; Verify: {}</source>
+   <translation>Ergebnisse aktuell; Prüfung: {}</translation>
   </message>
   <message>
    <source>Roman's rule</source>
@@ -571,10 +571,6 @@
    <translation>Teilfläche {}</translation>
   </message>
   <message>
-   <source>The axes of all operations move while they cut: choose their machine on the tab Limits of the planning panel.</source>
-   <translation>Die Achsen aller Operationen bewegen sich beim Schneiden: die Maschine auf der Karte Grenzen der Planung wählen.</translation>
-  </message>
-  <message>
    <source>The axis leans by one angle from the normal, along the feed.</source>
    <translation>Die Achse neigt sich um einen Winkel von der Normalen in Vorschubrichtung.</translation>
   </message>
@@ -667,8 +663,8 @@
    <translation>Es gibt keine geplante Operation, die zu schreiben wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
   </message>
   <message>
-   <source>These operations have {0} orientations, and each becomes a job. Controls know {1} work offsets, so that several jobs will have the same one. Make {0} jobs?</source>
-   <translation>Diese Operationen haben {0} Orientierungen, und jede wird ein Auftrag. Steuerungen kennen {1} Nullpunktverschiebungen, sodass mehrere Aufträge dieselbe haben werden. {0} Aufträge anlegen?</translation>
+   <source>These operations have {0} orientations, and each becomes a job. There are only {1} work offsets (G54 to G59.3), so some jobs will share one. Make {0} jobs?</source>
+   <translation>Diese Operationen haben {0} Orientierungen, und jede wird ein Auftrag. Es gibt nur {1} Nullpunktverschiebungen (G54 bis G59.3), deshalb teilen sich manche Aufträge eine. {0} Aufträge anlegen?</translation>
   </message>
   <message>
    <source>This axis can be used.</source>
@@ -677,6 +673,10 @@
   <message>
    <source>This axis cannot be used.</source>
    <translation>Diese Achse ist nicht brauchbar.</translation>
+  </message>
+  <message>
+   <source>This machine cannot reach the tool axis of: {}</source>
+   <translation>Werkzeugachse auf dieser Maschine nicht erreichbar: {}</translation>
   </message>
   <message>
    <source>Tilt from Z</source>
@@ -765,6 +765,10 @@
   <message>
    <source>Whole part</source>
    <translation>Ganzes Teil</translation>
+  </message>
+  <message>
+   <source>Within {} (rest material excluded)</source>
+   <translation>Innerhalb {} (ohne Restmaterial)</translation>
   </message>
   <message>
    <source>Without limits</source>
@@ -1011,10 +1015,6 @@
    <translation>{} misst {}: die Einheit der Datei prüfen.</translation>
   </message>
   <message>
-   <source>{} meet by {} mm</source>
-   <translation>{} treffen sich um {} mm</translation>
-  </message>
-  <message>
    <source>{} min</source>
    <translation>{} min</translation>
   </message>
@@ -1039,8 +1039,8 @@
    <translation>{} von {} Flächen haben eine Achse; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
   <message>
-   <source>{} of {} jobs have a work offset that other jobs have too: set it for the orientation before such a program runs. The jobs and their programs say so.</source>
-   <translation>{} von {} Aufträgen haben eine Nullpunktverschiebung, die auch andere haben: vor einem solchen Programm für die Orientierung einstellen. Aufträge und Programme sagen es.</translation>
+   <source>{} of {} jobs share their work offset with another job. Set the offset for the orientation before you run such a program. Jobs and programs carry a note.</source>
+   <translation>{} von {} Aufträgen teilen sich die Nullpunktverschiebung mit einem anderen. Vor dem Start eines solchen Programms die Verschiebung für die Orientierung setzen. Aufträge und Programme tragen einen Hinweis.</translation>
   </message>
   <message>
    <source>{} of {} machined</source>
@@ -1143,8 +1143,8 @@
    <translation>{}: die bisher betrachteten Achsen</translation>
   </message>
   <message>
-   <source>{}: the largest tool that reaches {} of what was looked at</source>
-   <translation>{}: das größte Werkzeug, das {} des bisher Betrachteten erreicht</translation>
+   <source>{}: the largest tool that was found to reach, on {} of the area so far</source>
+   <translation>{}: größtes einsetzbares Werkzeug auf {} der bisher geprüften Fläche</translation>
   </message>
   <message>
    <source>{}: {} operations</source>
@@ -1207,7 +1207,7 @@
   </message>
   <message>
    <source>Stop</source>
-   <translation>Anhalten</translation>
+   <translation>Stopp</translation>
   </message>
   <message>
    <source>Stops; the folder stays as it is.</source>
@@ -1305,8 +1305,8 @@
    <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
   <message>
-   <source>Two rotary axes hold almost every tool axis in two ways. The bold one is taken: nearest to the operation before, inside all ranges and travels, and with no bodies that meet. What speaks against a solution stands below its angles.</source>
-   <translation>Zwei Drehachsen halten fast jede Werkzeugachse auf zwei Arten. Die fett gedruckte wird genommen: der vorigen Operation am nächsten, innerhalb aller Bereiche und Verfahrwege und ohne Körper, die sich treffen. Was gegen eine Lösung spricht, steht unter ihren Winkeln.</translation>
+   <source>Two rotary axes reach almost every tool axis in two positions. The bold one is used: closest to the previous operation, inside all ranges and travels, and without collisions. Problems are listed below the angles.</source>
+   <translation>Zwei Drehachsen erreichen fast jede Werkzeugachse in zwei Stellungen. Verwendet wird die fett gedruckte: der vorigen Operation am nächsten, innerhalb aller Bereiche und Verfahrwege und ohne Kollision. Probleme stehen unter den Winkeln.</translation>
   </message>
   <message>
    <source>Where the rotary axes stand for each operation, in both solutions. Click one to see it.</source>
@@ -1332,8 +1332,8 @@
  <context>
   <name>ToolAxisOperation</name>
   <message>
-   <source>Draws what the command draws of a plan, passes, contacts, angles and motions of the axes among it, and shows it in a window.</source>
-   <translation>Zeichnet, was der Befehl von einem Plan zeichnet, darunter Bahnen, Berührungen, Winkel und Bewegungen der Achsen, und zeigt es in einem Fenster.</translation>
+   <source>Collisions of cutter, shank and holder with the part, the bodies to avoid and everything else visible, and where they are.</source>
+   <translation>Kollisionen von Fräser, Schaft und Halter mit dem Teil, den zu meidenden Körpern und allem sonst Sichtbaren, und wo sie sind.</translation>
   </message>
   <message>
    <source>Moves tool and holder along the passes.</source>
@@ -1360,16 +1360,16 @@
    <translation>Trägt entlang der Bahnen Material ab.</translation>
   </message>
   <message>
+   <source>Shows pictures of the plan in a window: passes, contacts, angles and axis motion.</source>
+   <translation>Zeigt Bilder des Plans in einem Fenster: Bahnen, Kontakte, Winkel und Achsbewegungen.</translation>
+  </message>
+  <message>
    <source>Tool position</source>
    <translation>Werkzeugstelle</translation>
   </message>
   <message>
    <source>Verify</source>
    <translation>Prüfen</translation>
-  </message>
-  <message>
-   <source>What cutter, shank and holder meet of the part, of what is avoided, and of what else is in sight, and where.</source>
-   <translation>Woran Schneide, Schaft und Halter stoßen: am Teil, an dem, was gemieden wird, und an allem, was sonst sichtbar ist; und wo.</translation>
   </message>
   <message>
    <source>What the axis of the operation comes to.</source>
@@ -1447,8 +1447,8 @@
    <translation>Aufmaß auf</translation>
   </message>
   <message>
-   <source>Allowances on some faces in place of the one on the tab Job, mm by the numbers of the faces.</source>
-   <translation>Aufmaße auf einzelnen Flächen an Stelle dessen auf dem Reiter Auftrag, in mm nach den Nummern der Flächen.</translation>
+   <source>Allowances of single faces in mm, by face number; they replace Allowance under Passes.</source>
+   <translation>Aufmaße einzelner Flächen in mm, nach Flächennummer; sie ersetzen das Aufmaß unter Bahnen.</translation>
   </message>
   <message>
    <source>Along the parameters of the face; in parallel planes that contain the tool axis; following the scallop height, so that passes lie as far apart as their strips are wide; or whichever of the first and the third is shorter. All but the first need fixed axes.</source>
@@ -1527,16 +1527,16 @@
    <translation>Durchmesser in jeder Höhe. Leer: der Halter wird nicht geprüft.</translation>
   </message>
   <message>
+   <source>Diameter of the cutter; of a tapered cutter, at its tip.</source>
+   <translation>Durchmesser des Fräsers; bei einem konischen Fräser an der Spitze.</translation>
+  </message>
+  <message>
    <source>Direction</source>
    <translation>Richtung</translation>
   </message>
   <message>
    <source>Division</source>
    <translation>Aufteilung</translation>
-  </message>
-  <message>
-   <source>Draws what the command draws of a plan, passes, contacts, angles and motions of the axes among it, and shows it in a window.</source>
-   <translation>Zeichnet, was der Befehl von einem Plan zeichnet, darunter Bahnen, Berührungen, Winkel und Bewegungen der Achsen, und zeigt es in einem Fenster.</translation>
   </message>
   <message>
    <source>Faces</source>
@@ -1547,8 +1547,8 @@
    <translation>Zu bearbeitende Flächen</translation>
   </message>
   <message>
-   <source>Feed locked</source>
-   <translation>Vorschub gesperrt</translation>
+   <source>Feed direction locked</source>
+   <translation>Vorschubrichtung gesperrt</translation>
   </message>
   <message>
    <source>Feed rate</source>
@@ -1763,8 +1763,8 @@
    <translation>Nullpunkt</translation>
   </message>
   <message>
-   <source>Other feed</source>
-   <translation>Anderer Vorschub</translation>
+   <source>Other feed direction</source>
+   <translation>Andere Vorschubrichtung</translation>
   </message>
   <message>
    <source>Passes</source>
@@ -1801,6 +1801,10 @@
   <message>
    <source>Play all operations</source>
    <translation>Alle Operationen abspielen</translation>
+  </message>
+  <message>
+   <source>Plays all operations in sequence with the index moves between them, on the machine if one is chosen.</source>
+   <translation>Spielt alle Operationen der Reihe nach mit den Schwenkbewegungen dazwischen ab, auf der Maschine, wenn eine gewählt ist.</translation>
   </message>
   <message>
    <source>Plays all operations in their order, with the index moves between them.</source>
@@ -1844,7 +1848,7 @@
   </message>
   <message>
    <source>Restore best axis</source>
-   <translation>Beste Achse</translation>
+   <translation>Beste Achse wiederherstellen</translation>
   </message>
   <message>
    <source>Revolutions of the spindle per minute.</source>
@@ -1857,10 +1861,6 @@
   <message>
    <source>Roughness Ra</source>
    <translation>Rauheit Ra</translation>
-  </message>
-  <message>
-   <source>Runs the tool along all operations in their order, with the index moves between them, on the machine where there is one.</source>
-   <translation>Führt das Werkzeug in ihrer Reihenfolge längs aller Operationen, mit den Schwenkbewegungen dazwischen, auf der Maschine, wo es eine gibt.</translation>
   </message>
   <message>
    <source>Scallop height</source>
@@ -1887,6 +1887,14 @@
    <translation>Zeigt nur die Flächen, deren Name diesen Text enthält oder deren Inhalt kleiner als eine Zahl ist: &lt; 5. Entfernen nimmt dann die markierten von der Liste, Strg+A markiert alle gezeigten.</translation>
   </message>
   <message>
+   <source>Shows pictures of the plan in a window: passes, contacts, angles and axis motion.</source>
+   <translation>Zeigt Bilder des Plans in einem Fenster: Bahnen, Kontakte, Winkel und Achsbewegungen.</translation>
+  </message>
+  <message>
+   <source>Side of the part that is clamped: no tool goes there. Face areas on that side are left for another setup.</source>
+   <translation>Gespannte Seite des Teils: Dort fährt kein Werkzeug hin. Was von den Flächen dort liegt, bleibt für eine andere Aufspannung.</translation>
+  </message>
+  <message>
    <source>Spindle</source>
    <translation>Spindel</translation>
   </message>
@@ -1911,8 +1919,12 @@
    <translation>Was auf den Flächen stehen bleibt.</translation>
   </message>
   <message>
+   <source>Stock that roughing left on the faces (at least the allowance). Shank and holder keep clear of it. 0: the faces are finished.</source>
+   <translation>Material, das vom Schruppen auf den Flächen steht (mindestens das Aufmaß). Schaft und Halter halten Abstand dazu. 0: Die Flächen sind fertig.</translation>
+  </message>
+  <message>
    <source>Stop</source>
-   <translation>Anhalten</translation>
+   <translation>Stopp</translation>
   </message>
   <message>
    <source>Stops the computation; what is found of whole faces by then stays.</source>
@@ -1953,10 +1965,6 @@
   <message>
    <source>The rest of the part is always kept clear of; ticked bodies too.</source>
    <translation>Der Rest des Teils wird immer gemieden, angekreuzte Körper auch.</translation>
-  </message>
-  <message>
-   <source>The side of the part that is held in the clamping: no tool goes there, and what of the faces lies there is left for another clamping.</source>
-   <translation>Die Seite des Teils, die gespannt ist: Dort fährt kein Werkzeug hin, und was von den Flächen dort liegt, bleibt einer anderen Aufspannung.</translation>
   </message>
   <message>
    <source>The tools of the plan in their colours, what they machine, and their time.</source>
@@ -2020,15 +2028,11 @@
   </message>
   <message>
    <source>Vertex</source>
-   <translation>Punkt</translation>
+   <translation>Eckpunkt</translation>
   </message>
   <message>
    <source>What other methods need for the same faces.</source>
    <translation>Was andere Verfahren für dieselben Flächen brauchen.</translation>
-  </message>
-  <message>
-   <source>What roughing left on the faces, at least the allowance: shank and holder keep clear of it; 0 for finished faces.</source>
-   <translation>Was das Schruppen auf den Flächen ließ, mindestens das Aufmaß: Schaft und Halter halten Abstand davon; 0 für fertige Flächen.</translation>
   </message>
   <message>
    <source>What the axis comes to, and beside it what the one comes to that is tried.</source>
@@ -2045,10 +2049,6 @@
   <message>
    <source>Where all faces of a part with blades are chosen, one blade is planned, and what is done there is turned to the others and proven there.</source>
    <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant; was dort geschieht, wird zu den anderen gedreht und dort nachgewiesen.</translation>
-  </message>
-  <message>
-   <source>Where the corner arc ends; of a tapered cutter, at its tip.</source>
-   <translation>Wo der Eckenbogen endet; bei einem kegeligen Fräser an der Spitze.</translation>
   </message>
   <message>
    <source>Where the work coordinate systems, jobs and programs have X, Y and Z zero.</source>
@@ -2385,8 +2385,8 @@
    <translation>Threads</translation>
   </message>
   <message>
-   <source>Threads that judge a plan. The verdict does not depend on them; planning has one.</source>
-   <translation>Threads, die einen Plan prüfen. Das Urteil hängt nicht von ihnen ab; geplant wird mit einem.</translation>
+   <source>Threads for Verify. They do not change its result. Planning uses one.</source>
+   <translation>Threads für die Prüfung. Sie ändern das Ergebnis nicht. Die Planung nutzt einen.</translation>
   </message>
   <message>
    <source>Tool</source>
@@ -2417,7 +2417,7 @@
   </message>
   <message>
    <source>Stop</source>
-   <translation>Anhalten</translation>
+   <translation>Stopp</translation>
   </message>
   <message>
    <source>Stops the judge.</source>
@@ -2585,8 +2585,8 @@
    <translation>Abspielen</translation>
   </message>
   <message>
-   <source>Runs tool, holder and machine along all operations in their order, with time, index moves and collisions</source>
-   <translation>Führt Werkzeug, Halter und Maschine in ihrer Reihenfolge längs aller Operationen, mit Zeit, Schwenkbewegungen und Kollisionen</translation>
+   <source>Plays all operations in sequence with tool, holder and machine; shows time, index moves and collisions</source>
+   <translation>Spielt alle Operationen der Reihe nach mit Werkzeug, Halter und Maschine ab; zeigt Zeit, Schwenkbewegungen und Kollisionen</translation>
   </message>
  </context>
  <context>

@@ -90,7 +90,7 @@ class CellCones(NamedTuple):
         return CellCones(self.cell[rows], self.cones.pick(rows))
 
     def blocks(self, most: int) -> "list[CellCones]":
-        """These pairs in lists of so many at most, none of them empty."""
+        """These pairs, in their order, in lists of `most` pairs at most, none of them empty."""
         return [self.pick(np.arange(first, min(first + most, len(self.cell))))
                 for first in range(0, len(self.cell), most)]
 

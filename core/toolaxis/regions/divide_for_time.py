@@ -48,17 +48,7 @@ class WholeCut(NamedTuple):
         ----------
         seconds : float
         """
-        return is_worth_dividing(seconds, self.seconds)
-
-
-def is_worth_dividing(saved: float, seconds: float) -> bool:
-    """Whether it is worth a division to save some time of what the whole takes, both in s.
-
-    Parameters
-    ----------
-    saved, seconds : float
-    """
-    return saved >= max(WORTH_SECONDS, WORTH_SHARE * seconds)
+        return seconds >= max(WORTH_SECONDS, WORTH_SHARE * self.seconds)
 
 
 def divide_for_time(job: FaceProblem, scene: ReachScene, whole: WholeCut,

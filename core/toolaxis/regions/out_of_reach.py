@@ -33,8 +33,8 @@ Indices = NDArray[np.int64]
 _HALVINGS, _MOST_CELLS = 4, 6000
 #: Radius of cones that are not halved any more, rad, and pairs of a cell and a cone that are tried for a face in all.
 _NARROW, MOST_PAIRS = np.radians(1.5), 600_000
-#: Pairs that are looked at together: many more take gigabytes.
-_AT_ONCE = 200_000
+#: Pairs that are looked at together at most, as many more take gigabytes, and where fewer are left to try.
+_AT_ONCE, _LEAST_BLOCK = 200_000, 1000
 #: Pairs in place of which one more cone of lines may be looked along, and how many may be in any case.
 _PAIRS_FOR_CONE, _FEWEST_CONES = 150, 500
 #: Pairs in place of which one cell may be looked at for corners alone, and how many may be in any case; largest ones of
@@ -111,8 +111,10 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
         proven += float(cells.area[surely | closed].sum())
         reached += float(cells.area[met].sum())
         found.append(cells.rectangles[surely | closed])
-        left = np.flatnonzero(open_ & ~met)
-        waiting = sum(len(proof.pairs.cell) for proof in proofs)  # each is looked at four times when its cell is halved
+        is_left = open_ & ~met
+        left = np.flatnonzero(is_left)
+        # A cell is halved only where each of its pairs may be looked at once more at least.
+        waiting = sum(int(is_left[proof.pairs.cell].sum()) for proof in proofs)
         if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried + waiting > most_pairs:
             break
         cells, parent = halve_rectangles(face, cells.pick(left))
@@ -174,7 +176,7 @@ class _Proof:
             Of which cells pairs are to be looked at.
         met : (n,) array of bool
         most : int
-            Pairs that may be looked at.
+            Pairs that may be looked at; a block more is begun where some are left.
 
         Returns
         -------
@@ -185,16 +187,17 @@ class _Proof:
         waiting = self.pairs.pick(~surely[self.pairs.cell])
         now = asked & ~narrow
         kept, waiting = waiting.pick(~now[waiting.cell]), waiting.pick(now[waiting.cell])
-        decided, blocks, tried = [kept], deque(waiting.blocks(_AT_ONCE)), 0
+        size = min(_AT_ONCE, max(most, _LEAST_BLOCK))
+        undecided, blocks, tried = [kept], deque(waiting.blocks(size)), 0
         while blocks and tried <= most:
             breathe()
             block = blocks.popleft()
             block = block.pick(self._may_touch(cells, block) & ~met[block.cell])
             tried += len(block.cell)
             open_, wide = self._try(cells, block, met)
-            decided.append(open_.pick(~wide))
-            blocks.extend(open_.pick(wide).halve().blocks(_AT_ONCE))
-        kept = CellCones.join_all([*decided, *blocks])
+            undecided.append(open_.pick(~wide))
+            blocks.extend(open_.pick(wide).halve().blocks(size))
+        kept = CellCones.join_all([*undecided, *blocks])
         self.pairs = kept.pick(~met[kept.cell])
         return tried
 

@@ -228,7 +228,7 @@ def machine_seen(walk):
     form.offsetZ.setValue(HEIGHT)
     desk.wait(lambda: form.angles.isEnabled() and "Looking" not in form.message.text(), "all are looked at", 300.0)
     desk.pump(1.0)
-    assert "can be held" in form.message.text(), form.message.text()
+    assert "can be reached" in form.message.text(), form.message.text()
     assert form.angles.rowCount() == len([one for one in walk.operations if one.Motions])
     for row in range(form.angles.rowCount()):
         texts = [desk.text(form.angles, row, column) for column in (0, 1)]

@@ -59,7 +59,7 @@ def test_many_jobs_are_asked_for_and_can_be_stopped(desk, crowded, answered, mon
         desk.gui.runCommand("ToolAxis_MakeJobs")
 
     text, = answered(make, "No")
-    assert "have 11 orientations" in text and "know 9 work offsets" in text
+    assert "have 11 orientations" in text and "only 9 work offsets" in text
     assert {thing.Name for thing in document.Objects} == names
 
     def slow(*given):
@@ -71,6 +71,6 @@ def test_many_jobs_are_asked_for_and_can_be_stopped(desk, crowded, answered, mon
     assert "/ 11, about" in label and {thing.Name for thing in document.Objects} == names
     monkeypatch.setattr(jobs, "_job", plain)
     _, text = answered(make, "Yes", "Ok")
-    assert text.startswith("4 of 11 jobs have a work offset that other jobs have too")
+    assert text.startswith("4 of 11 jobs share their work offset with another job")
     document.undo()
     assert {thing.Name for thing in document.Objects} == names

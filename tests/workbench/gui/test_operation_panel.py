@@ -76,7 +76,7 @@ def test_a_clamp_that_the_tool_meets_is_told_and_red(desk, operation, tmp_path):
     """A post that nobody ticked stands at one side of the part, as high as the holder."""
     document = operation.Document
     form = opened(desk, operation)
-    desk.wait(lambda: "Nothing meets" in form.met.text(), "collisions were looked for")
+    desk.wait(lambda: "No collisions" in form.met.text(), "collisions were looked for")
     assert "cutter, shank" in form.met.text()
     clamp = document.addObject("Part::Box", "Clamp")
     clamp.Length, clamp.Width, clamp.Height = 6, 6, 90

@@ -258,7 +258,7 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
     view = desk.gui.getDocument(document.Name).ActiveView
     seen = view.getCameraOrientation()
     form = machine_panel(desk, "bc-table-table", (0, 0, 20))
-    assert "can be held" in form.message.text(), form.message.text()
+    assert "can be reached" in form.message.text(), form.message.text()
     assert form.still.isChecked() and form.angles.rowCount() == 2 and form.angles.columnCount() == 2
     texts = [[desk.text(form.angles, row, column) for column in (0, 1)] for row in (0, 1)]
     heads = [form.angles.model().headerData(row, desk.qt.Qt.Vertical) for row in (0, 1)]
@@ -293,7 +293,7 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
 def test_what_cannot_be_held_is_told(desk, leaning):
     form = machine_panel(desk, "four-axis-a", (0, 0, 0))
     assert desk.text(form.angles, 0, 0) == "no position reaches it"
-    assert "Not held by this machine" in form.message.text() and not form.play.isEnabled()
+    assert "This machine cannot reach the tool axis of" in form.message.text() and not form.play.isEnabled()
     desk.press(desk.standard_button("Cancel"))
     desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
 
@@ -304,7 +304,7 @@ def test_bodies_that_meet_are_red(desk, leaning):
     assert "the spindle meets the table by" in desk.text(form.angles, 0, 0), desk.text(form.angles, 0, 0)
     form.angles.cellClicked.emit(0, 0)
     desk.pump(0.2)
-    assert "spindle, table meet by" in form.pointer.text(), form.pointer.text()
+    assert "Collision: spindle, table; " in form.pointer.text(), form.pointer.text()
     desk.shot("73-collision")
 
 

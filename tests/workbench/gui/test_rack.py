@@ -298,13 +298,15 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     growth._node = noted
     desk.press(form.compute)
     desk.wait(lambda: not growth.empty or form.compute.isEnabled(), "what tools reach is shown")
-    assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Reaches" and table.isVisible()
-    assert form.tabs.currentWidget() is form.resultTab and "largest tool" in form.cost.text()
+    assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Largest for" and table.isVisible()
+    assert form.tabs.currentWidget() is form.resultTab and "largest tool" in form.growthNote.text()
+    assert form.growthNote.isVisible()
     desk.shot("92-growing")
     desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
     assert seen == {(kind, tool) for kind in ("SeenCells", "SeenCuts")
                     for tool in ("Ball D20, 60 out", "Ball D6, 40 out")}, "what each reaches, and its passes"
     assert growth.empty and growth.root is None, "the plan has taken its place"
+    assert not form.growthNote.isVisible()
     assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Area"
     assert " machined" in form.message.text() and "with 2 of 2 tools, passes: " in form.message.text()
     assert "mean step-over " in form.message.text() and "axes: " in form.message.text()
@@ -388,3 +390,21 @@ def test_stop_keeps_what_is_finished(desk, grooved, form):
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
     plan = plan_in(grooved[0].Document)
     assert plan.Outcome == "cancelled" and plan.NotBegun.Value > 0 and plan.Machined.Value > 0
+
+
+def test_what_was_found_so_far_goes_with_a_stop_and_with_the_part(desk, grooved, form):
+    growth, thing = desk.opened[-1]().growth, grooved[0]
+
+    def begun():
+        desk.press(form.compute)
+        desk.wait(lambda: not growth.empty, "what tools reach is shown")
+
+    begun()
+    desk.press(form.stop)
+    desk.wait(lambda: form.compute.isEnabled(), "it is stopped")
+    assert growth.empty and growth.root is None and not form.growthNote.isVisible() and not form.toolTable.isVisible()
+    begun()
+    thing.Document.removeObject(thing.Name)
+    desk.pump(0.3)
+    assert growth.empty and growth.root is None and not form.growthNote.isVisible() and not form.toolTable.isVisible()
+    assert "The part was deleted" in form.message.text()

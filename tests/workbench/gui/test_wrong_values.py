@@ -464,7 +464,7 @@ def test_a_machine_edited_badly_after_it_was_chosen(desk, operation, tmp_path):
     form.machine.addItem("mine", str(file))
     form.machine.setCurrentIndex(form.machine.count() - 1)
     desk.wait(lambda: not busy(form), "it is looked at")
-    assert "can be held" in form.message.text(), form.message.text()
+    assert "can be reached" in form.message.text(), form.message.text()
     file.write_text("not = [ a machine")
     desk.press(desk.standard_button("Ok"))
     desk.pump(0.2)

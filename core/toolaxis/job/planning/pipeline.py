@@ -247,7 +247,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         _check_held_side(given, chosen)
     bodies = tuple(load(body) for body in _list_obstacles(obstacles))
     chosen_faces = choose_faces(loaded, numbers)
-    loaded = _with_what_is_left(loaded, chosen_faces, inputs.stock)
+    _check_allowances(loaded)
+    if inputs.stock > 0:
+        loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
     job = PlanningJob(loaded, cutter, inputs, allowed, bodies, datum_of(inputs, datum, loaded), regions, orientations,
                       check_workers(workers), machine=mounting, division=given)
     free, in_clamping = cut_faces(loaded, chosen_faces)
@@ -264,7 +266,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
 
 
 def _check_tools(inputs: PlanInputs, rack: ToolLibrary, mounting: Mounting | None) -> None:
-    """That tools and machine allow what is asked for."""
+    """Refuse what tools and machine do not allow."""
     if inputs.objective == "time":
         require_machine_limits(mounting)
     if len(rack.tools) > 1:
@@ -273,12 +275,11 @@ def _check_tools(inputs: PlanInputs, rack: ToolLibrary, mounting: Mounting | Non
         inputs.check_tool(rack.tools[0])
 
 
-def _with_what_is_left(part: Part, faces: Sequence[Face], stock: float) -> Part:
-    """A part with the stock that roughing left on faces, mm; skins have one allowance each."""
+def _check_allowances(part: Part) -> None:
+    """Refuse skins whose faces have different allowances."""
     if part.allowances is not None:
         for face in part.faces:
             part.allowances.check_alike(face)
-    return part.with_stock(stock, (number for face in faces for number in face.numbers)) if stock > 0 else part
 
 
 def _join_faces(part: Part, faces: Sequence[int | Sequence[int]] | str | None, rack: ToolLibrary, chosen: Strategy,

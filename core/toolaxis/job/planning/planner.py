@@ -39,12 +39,12 @@ from toolaxis.partition.face_division import Regions
 from toolaxis.plan.choices import DIVIDED, FEEDS, ISO
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
-from toolaxis.plan.plan import CHANGE_SECONDS, INDEX_SECONDS, Option, Plan, PlanInputs
+from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
 from toolaxis.regions.axis_choice import reckon_axes
 from toolaxis.regions.divide_by_reach import ReachDivision, divide_by_reach
-from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds, is_worth_dividing
+from toolaxis.regions.divide_for_time import WholeCut, divide_for_time, estimate_seconds
 from toolaxis.regions.machined_beside import take_machined_beside
 from toolaxis.regions.scene import ReachScene
 from toolaxis.regions.tool_choice import AxisTime
@@ -69,9 +69,8 @@ REFUSED = "shared axis refused: "
 #: How many times the limit of work a sub-surface is allowed by its share of the area of a plan with several tools, at
 #: least and at most; and how many times besides for the passes of an axis that was found.
 _WORK_OF_SHARE, _LEAST_WORK, _MOST_WORK, _FOR_PASSES = 6.0, 0.25, 4.0, 1.5
-#: Share of a face that its pieces may machine less of it than one axis does: where no other tool finishes it, and where
-#: one does.
-_SAME_AREA, _FINISHED_AREA = 1e-3, 0.02
+#: Share of a face that its pieces may machine less of it than one axis does.
+_SAME_AREA = 1e-3
 #: Time from which on a sub-surface is divided before it is planned whole, s, and what is told of it until then.
 _LONG, _HOURS = 1200.0, "it is divided before its axis is searched"
 #: Why a sub-surface is divided before an axis for all of it is looked for.
@@ -159,8 +158,6 @@ class PlanningJob:
         Whether a plan with several tools divides what one axis machines where several axes take less time.
     known_axes : tuple of (3,) arrays
         Axes under which the tool machines something else: these cost no index move.
-    rest_pace : float
-        Area that other tools machine in a second of what this one leaves, mm^2/s, with little asked; 0 where none does.
     """
 
     part: Part
@@ -179,7 +176,6 @@ class PlanningJob:
     asked_area: float = 0.0
     for_time: bool = True
     known_axes: tuple[Array, ...] = ()
-    rest_pace: float = 0.0
 
     def by(self, method: str) -> "PlanningJob":
         """The same job by another method; with a ball end in the tool's place where that is what the method takes.
@@ -274,20 +270,14 @@ class PlanningJob:
         return [one for target in targets if (one := made_of(target, operations)) is not None]
 
     def _serves_better(self, pieces: Sequence[Operation], whole: Operation) -> bool:
-        """Whether the operations of a face's pieces machine as much as that of the whole in less time, counted with
-        that of other tools for what they leave."""
+        """Whether the operations of a face's pieces machine as much as that of the whole, in less time."""
         if not pieces or not all(op.done for op in pieces):
             return False
         if not whole.done:
             return True
         lost = area_machined([whole]) - area_machined(pieces)
         saved = self._seconds([whole]) - self._seconds(pieces)
-        if lost <= _SAME_AREA * whole.face.area:
-            return saved >= INDEX_SECONDS
-        if not self.rest_pace or lost > _FINISHED_AREA * whole.face.area:
-            return False
-        finished = lost / self.rest_pace + CHANGE_SECONDS + INDEX_SECONDS * len(pieces)
-        return is_worth_dividing(saved - finished, self._seconds([whole]))
+        return lost <= _SAME_AREA * whole.face.area and saved >= INDEX_SECONDS
 
     def _seconds(self, operations: Sequence[Operation]) -> float:
         """Time of some operations in their quickest order, index moves between them included."""

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -99,8 +100,9 @@ class RackPlanner:
         """
         try:
             if self._with_all_tools(faces, progress):
-                self._try_other_tools(faces, progress.within("other tools"))
-                self._take_skins_apart(faces, progress.within("faces one by one"))
+                trying = replace(progress, on_piece=None)  # what is only tried is not shown as found
+                self._try_other_tools(faces, trying.within("other tools"))
+                self._take_skins_apart(faces, trying.within("faces one by one"))
                 return self._put_together("")
         except Cancelled:
             pass
@@ -139,7 +141,7 @@ class RackPlanner:
         alike = self._find_alike(whole)
         originals = [face for k, face in enumerate(whole) if k not in alike]
         copies = {face: tuple(one for one in alike.values() if one.original is face) for face in originals}
-        found = self._look_at(originals, copies, progress)
+        found = self._screen_faces(originals, copies, progress)
         screened, chains = list(found), [one.chains for one in found.values()]
         self._screen.keep(found)
         counts = [1 + len(copies[face]) for face in screened]
@@ -155,19 +157,19 @@ class RackPlanner:
             self._reckoned.add((face, *(one.face for one in copies[face])), chain, others)
         self._wait_or_refuse(screened, chosen, copies, progress)
 
-    def _look_at(self, faces: Sequence[Face], copies: Mapping[Face, tuple[AlikeFace, ...]],
-                 progress: Progress) -> dict[Face, ScreenedFace]:
+    def _screen_faces(self, faces: Sequence[Face], copies: Mapping[Face, tuple[AlikeFace, ...]],
+                      progress: Progress) -> dict[Face, ScreenedFace]:
         """What the screening says of whole faces; one on which the program fails is done, with its copies."""
         order = sorted(range(len(faces)), key=lambda k: -faces[k].area)  # who waits wants to see the largest first
 
-        def _screen(place: int, inner: Progress) -> ScreenedFace:
+        def _screen_one(place: int, inner: Progress) -> ScreenedFace:
             inner.report("choice of tools", place, len(faces))
             face = faces[order[place]]
             screened = self._screen.look_at(face, 0)
             self._hand_over(face, screened, copies[face], inner)
             return screened
 
-        found = abreast(_screen, len(faces), self.jobs[0].workers, progress)
+        found = abreast(_screen_one, len(faces), self.jobs[0].workers, progress)
         if found.cancelled:
             raise Cancelled("cancelled by the user")
         for place, why in found.faults.items():
@@ -178,9 +180,11 @@ class RackPlanner:
 
     def _hand_over(self, face: Face, screened: ScreenedFace, copies: Sequence[AlikeFace], progress: Progress) -> None:
         """Let whoever listens see which tools reach what of a face, and of those that are alike."""
-        if progress.on_piece is not None and screened.reach.shape[2]:
+        if progress.on_piece is None or not screened.reach.shape[2]:
+            return
+        with suppress(Exception):  # a picture that fails costs no face
             found = self._screen.largest_tools(face, screened.reach)
-            for one in (found, *(found.on(alike) for alike in copies)):
+            for one in (found, *(found.carry_to(alike) for alike in copies)):
                 progress.hand_over(one)
 
     def _wait_or_refuse(self, faces: Sequence[Face], chains: Sequence[ToolChain],
@@ -259,7 +263,7 @@ class RackPlanner:
         self._waiting = [one for one in self._waiting if one.tool != tool]
         targets = [target for label, one in now.items() if (target := self._target_of(one, label)) is not None]
         targets.sort(key=lambda target: -target.face.area)  # somebody may stop it before all is done
-        job = replace(self.jobs[tool], known_axes=self._axes_under(tool), rest_pace=self._rest_pace(tool))
+        job = replace(self.jobs[tool], known_axes=self._axes_under(tool))
         made = job.plan_pieces(targets, self._screen.scene, progress)
         self._faults += made.faults
         origins = [find_origin(op.face, now) for op in made.operations]
@@ -296,13 +300,6 @@ class RackPlanner:
         axis = self._screen.axis(number)
         turned = [axis, *(alike.matrix[:3, :3] @ axis for alike in one.copies)]
         return len(np.unique(np.round(turned, 6) + 0.0, axis=0)) - 1
-
-    def _rest_pace(self, tool: int) -> float:
-        """Area that the slowest of the smaller tools machines of a plane in a second, mm^2/s; 0 without one."""
-        inputs = self.jobs[0].inputs
-        smaller = [self.jobs[k].tool for k in self._allowed if k > tool]
-        return min((float(np.sqrt(8 * one.radius * inputs.scallop)) * inputs.at_rates_of(one).feedrate / 60
-                    for one in smaller), default=0.0)
 
     def _axes_under(self, tool: int) -> tuple[Array, ...]:
         """The axes under which a tool machines something already."""

@@ -65,7 +65,7 @@ class LargestTools(NamedTuple):
     tools : the larger ones first, k of them
     point, normal : (n, 3) array, mm, and unit vectors out of the material
     area : (n,) array, mm^2
-    number : (n,) array of int, of the tool among `tools`; k where none reaches the cell
+    largest : (n,) array of int, place of the tool among `tools`; k, beyond the last one, where none reaches the cell
     """
 
     face: Face
@@ -73,10 +73,10 @@ class LargestTools(NamedTuple):
     point: Array
     normal: Array
     area: Array
-    number: NDArray[np.intp]
+    largest: NDArray[np.intp]
 
-    def on(self, alike: AlikeFace) -> "LargestTools":
-        """The same on a face that is alike: other surroundings, which change it, are not looked at.
+    def carry_to(self, alike: AlikeFace) -> "LargestTools":
+        """The same on a face that is alike; what differs around it does not count.
 
         Parameters
         ----------
@@ -135,9 +135,9 @@ class RackScreening:
         """
         cells = self._cells(face)
         reached = reach.from_tool(0).any(axis=1)
-        number = np.where(reached.any(axis=0), reached.argmax(axis=0), len(self._jobs))
+        largest = np.where(reached.any(axis=0), reached.argmax(axis=0), len(self._jobs))
         tools = tuple(job.tool for job in self._jobs)
-        return LargestTools(face, tools, cells.point, cells.normal, cells.area, number)
+        return LargestTools(face, tools, cells.point, cells.normal, cells.area, largest)
 
     def keep(self, screened: Mapping[Face, ScreenedFace]) -> None:
         """Remember what was found: a face that a tool cannot machine at all waits for the next one as it is.

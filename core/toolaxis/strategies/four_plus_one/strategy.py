@@ -23,7 +23,7 @@ class FourPlusOne(Strategy):
     name = "four-plus-one"
     title = "4+1 axes"
     summary = "one rotary axis of the machine clamped at the best angle, the other turning along the passes"
-    note = "One rotary axis is clamped, the other turns along the passes. Needs a machine on the tab Limits."
+    note = "One rotary axis is clamped, the other rotates along the passes. Needs a machine (tab Job)."
     rank = 4
     machine_use = "clamps one of its rotary axes and turns the other"
     at_points = True

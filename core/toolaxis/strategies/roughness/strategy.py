@@ -26,8 +26,8 @@ class Roughness(Strategy):
     name = "multiscale"
     title = "strip width and roughness"
     summary = "bull-nose finishing to a given --roughness and strip width with minimal rotary motion"
-    note = ("Keeps roughness and strip width, the rotary axes turn least. Needs a bull nose and a machine on the tab "
-            "Limits.")
+    note = ("Keeps to the roughness and strip width with the least rotary motion. Needs a bull nose and a machine (tab "
+            "Job).")
     rank = 5
     own_spacing = True
     machine_use = "minimises the motion of its rotary axes"

@@ -84,7 +84,7 @@ class _Thread(QtCore.QThread):
             return
         try:
             offered = None if self.digest is None else self._offered
-            handed = None if self.digest_piece is None else self._handed_over
+            handed = None if self.digest_piece is None else self._queue_piece
             self.result = self.compute(Progress(self._report, self.stop.is_set, offered, handed))
         except Cancelled:
             self.stopped = True
@@ -107,9 +107,13 @@ class _Thread(QtCore.QThread):
             if digested is not None:
                 self.interim, self.taken = digested, monotonic()
 
-    def _handed_over(self, piece: Any) -> None:
-        if self.digest_piece is not None:
+    def _queue_piece(self, piece: Any) -> None:
+        if self.digest_piece is None:
+            return
+        try:
             self.pieces.append(self.digest_piece(piece))
+        except Exception:  # what cannot be shown costs no plan
+            FreeCAD.Console.PrintLog(traceback.format_exc())
 
 
 @cache
@@ -233,7 +237,7 @@ class BackgroundWork(QtCore.QObject):
     digest : callable, optional
         Makes of an intermediate result, in the other thread, what `interim` is emitted with; None for nothing yet.
     digest_piece : callable, optional
-        Makes of a piece of the result, in the other thread, what is emitted with `pieces`.
+        Makes of a part of the result, in the other thread, what `pieces` is emitted with.
     """
 
     progressed = QtCore.Signal(str, float)
@@ -241,7 +245,7 @@ class BackgroundWork(QtCore.QObject):
     interim = QtCore.Signal(object)
     """An intermediate result, digested."""
     pieces = QtCore.Signal(object)
-    """Pieces of the result that were handed over since the last time, digested: a list."""
+    """Parts of the result that came in since the last time, digested: a list."""
     done = QtCore.Signal(object)
     """What the callable returned."""
     failed = QtCore.Signal(str)

@@ -55,7 +55,7 @@ def measures(found, seconds=0.0):
              (translate("ToolAxis", "Strip width"), lambda: length_text(found.average_strip_width)),
              (translate("ToolAxis", "Cutting length"), lambda: length_text(found.length)),
              *([(translate("ToolAxis", "Machining time"), lambda: clock(seconds))] if seconds > 0 else []),
-             *([(translate("ToolAxis", "Over the ideal length"),
+             *([(translate("ToolAxis", "Excess over ideal length"),
                  lambda: f"{100 * (found.length / found.ideal_of_cut - 1):.1f} %")] if found.ideal > 0 else []),
              (translate("ToolAxis", "Gouge, at most"), lambda: fine_text(found.gouge)),
              (translate("ToolAxis", "Cutter clearance"), lambda: _room(found, "cutter")),

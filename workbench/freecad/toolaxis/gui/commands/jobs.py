@@ -46,8 +46,8 @@ class MakeJobs:
         try:
             count = count_jobs(found)
             if count > len(OFFSETS) and not confirmed(translate(
-                    "ToolAxis", "These operations have {0} orientations, and each becomes a job. Controls know {1} "
-                                "work offsets, so that several jobs will have the same one. Make {0} jobs?").format(
+                    "ToolAxis", "These operations have {0} orientations, and each becomes a job. There are only {1} "
+                                "work offsets (G54 to G59.3), so some jobs will share one. Make {0} jobs?").format(
                                     count, len(OFFSETS))):
                 return
             made = _make_jobs(document, found)
@@ -62,12 +62,12 @@ class MakeJobs:
         for job in made:
             FreeCADGui.Selection.addSelection(document.Name, job.Name)
         without, shared = [one.Label for one in found if not one.Motions], shared_of(made)
-        told = [translate("ToolAxis", "Not in the jobs, for want of an axis: {}").format(", ".join(without))] * bool(
+        told = [translate("ToolAxis", "Not in the jobs (no tool axis): {}").format(", ".join(without))] * bool(
             without)
         if shared:
-            told.append(translate("ToolAxis", "{} of {} jobs have a work offset that other jobs have too: set it for "
-                                              "the orientation before such a program runs. The jobs and their programs "
-                                              "say so.").format(len(shared), len(made)))
+            told.append(translate("ToolAxis", "{} of {} jobs share their work offset with another job. Set the offset "
+                                              "for the orientation before you run such a program. Jobs and programs "
+                                              "carry a note.").format(len(shared), len(made)))
         if told:
             warn("\n\n".join(told))
 

@@ -30,8 +30,8 @@ class ChooseMachine:
         planned = [one for one in operations(FreeCAD.ActiveDocument) if one.Motions]
         found = [one for one in planned if not one.AxisMoves]
         if planned and not found:
-            warn(FreeCAD.Qt.translate("ToolAxis", "The axes of all operations move while they cut: choose their "
-                                                  "machine on the tab Limits of the planning panel."))
+            warn(FreeCAD.Qt.translate("ToolAxis", "All operations use a moving tool axis. Choose their machine in the "
+                                                  "planning panel, tab Job."))
             return
         if not found:
             warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation for a machine: "

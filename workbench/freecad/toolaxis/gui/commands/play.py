@@ -18,7 +18,7 @@ class Play:
         return {"Pixmap": str(RESOURCES / "icons" / "play.svg"),
                 "MenuText": QT_TRANSLATE_NOOP("ToolAxis_Play", "Play"),
                 "ToolTip": QT_TRANSLATE_NOOP(
-                    "ToolAxis_Play", "Runs tool, holder and machine along all operations in their order, with time, "
+                    "ToolAxis_Play", "Plays all operations in sequence with tool, holder and machine; shows time, "
                                      "index moves and collisions"),
                 "Accel": "T, Y"}
 

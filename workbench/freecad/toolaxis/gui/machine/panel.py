@@ -157,12 +157,14 @@ class MachinePanel(Panel):
         if found.laid is not None:
             self.bar.show(found.laid, looks=True)
         if lost:
-            self.told = translate("ToolAxis", "Not held by this machine: {}").format(", ".join(lost)), True
+            told = translate("ToolAxis", "This machine cannot reach the tool axis of: {}")
+            self.told = told.format(", ".join(lost)), True
         elif any(one.tool.gauge_length is None for one in found.operations):
-            self.told = translate("ToolAxis", "Every axis can be held. Travels are not looked at: the tool has no "
-                                              "holder."), False
+            self.told = translate("ToolAxis", "All tool axes can be reached. Axis travels not checked: the tool has "
+                                              "no holder."), False
         else:
-            self.told = translate("ToolAxis", "Every axis can be held. OK puts the machine into the document."), False
+            told = translate("ToolAxis", "All tool axes can be reached. OK adds the machine to the document.")
+            self.told = told, False
         tell(self.form.message, *self.told)
         if found.laid is not None:
             self._look_out()

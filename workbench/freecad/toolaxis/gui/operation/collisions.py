@@ -87,7 +87,7 @@ class Collisions:
         if here is not None:
             return line_of(here.text), True
         if not self.found.found:
-            return translate("ToolAxis", "Nothing meets along the passes; looked at: {}").format(
+            return translate("ToolAxis", "No collisions along the passes (checked: {})").format(
                 ", ".join(map(shown, self.found.checked))), False
         if self.somewhere() is None:
             return translate("ToolAxis", "Between the passes {}").format(shown(self.found.found[0].text)), True

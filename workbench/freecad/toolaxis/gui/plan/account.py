@@ -122,14 +122,14 @@ def fill_reached(table, tools, area):
     table : QTableWidget
     tools : sequence of ReachedByTool
     area : float
-        mm^2 that were looked at.
+        Of the faces that were screened so far, mm^2.
     """
     table.setVisible(bool(tools))
-    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Reaches"), translate("ToolAxis", "Machined")]
+    heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Largest for"), translate("ToolAxis", "Machined")]
     rows = [(f"T{one.number} {one.name}", percent(one.reached, area),
              percent(one.machined, area) if one.machined else "") for one in tools]
-    told = [translate("ToolAxis", "{}: the largest tool that reaches {} of what was looked at").format(*row[:2])
-            for row in rows]
+    form = translate("ToolAxis", "{}: the largest tool that was found to reach, on {} of the area so far")
+    told = [form.format(*row[:2]) for row in rows]
     _fill(table, heads, rows, [one.colour for one in tools], told)
 
 

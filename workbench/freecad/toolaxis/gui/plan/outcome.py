@@ -34,8 +34,8 @@ def outcome_sentence(plan):
         return translate("ToolAxis", "Stopped with {} finished. {} OK puts what is finished into the document.").format(
             done, figures(plan)), True
     if done == count and touched_once(plan):
-        return translate("ToolAxis", "Every face has an axis, but two-point contact has one contact everywhere; the "
-                                     "reasons are on the tab Axis. OK puts them into the document."), True
+        return translate("ToolAxis", "Every face has an axis, but two-point contact was not possible anywhere "
+                                     "(reasons: tab Axis). OK adds the operations to the document."), True
     if done == count:
         return translate("ToolAxis", "Every face has an axis. {} OK puts them into the document.").format(
             figures(plan)), False

@@ -72,7 +72,7 @@ class PlanPanel(Panel):
         self.preview = Preview(document)
         self.setup_preview = SetupPreview(document, self.form, self.fields.setup)
         self.view = AxisView(self.form, self.preview)
-        self.growth = RackGrowth(document, self.form.toolTable)
+        self.growth = RackGrowth(document, self.form.toolTable, self.form.growthNote)
         self.player = PlanPlayer(document, self.form, self.preview)
         self.remedies = RemedyRow(self.form)
         self.choice = FaceChoice(document, self.form, self.fields)
@@ -251,6 +251,8 @@ class PlanPanel(Panel):
         self.remedies.clear()
         inputs = JobInputs(**self.fields.read(), pieces=self._pieces())
         self.view.leave()
+        if self.view.plan is None:
+            self.view.clear()
         self.preview.clear()
         try:
             task = api.task(inputs)
@@ -365,10 +367,6 @@ class PlanPanel(Panel):
                 self.view.begin_growing()
                 self.form.tabs.setCurrentWidget(self.form.resultTab)
             self.growth.add(pieces)
-            if not self.view.growing:
-                told = translate("ToolAxis", "Points: the largest tool that reaches the face there; grey where none "
-                                             "does. Lines: finished passes.")
-                self.form.cost.setText(told)
 
     def _light(self, stage, _):
         self.choice.light(stage)
@@ -419,6 +417,7 @@ class PlanPanel(Panel):
         else:
             return
         self._leave()
+        self.growth.clear()
         self.computed = None
         self.view.clear()
         self._changed()

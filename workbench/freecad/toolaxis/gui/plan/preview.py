@@ -8,7 +8,7 @@ import numpy as np
 from freecad.toolaxis.document.axis_lines import COLOUR, SHARE, ends_of
 from freecad.toolaxis.document.preferences import colours
 from freecad.toolaxis.document.tool_colours import tool_colour
-from freecad.toolaxis.gui.play.nodes import colour_node, revolve, solids, view_of
+from freecad.toolaxis.gui.play.nodes import colour_node, revolve, solids, unpickable_node, view_of
 from pivy import coin  # here, with the panel: it takes a while, in which nothing may wait that is computed
 from PySide import QtCore
 
@@ -16,7 +16,7 @@ _TRIAD = (("X", (0.86, 0.15, 0.15)), ("Y", (0.20, 0.62, 0.20)), ("Z", (0.20, 0.3
 #: Widths of the cuts of the operation that is shown, and of the others, pixels.
 _THICK, _THIN = 1.6, 1.0
 #: Time between the parts that are put into the view, ms: the first drawing of each is slow.
-_STEP = 20
+STEP = 20
 
 
 class Preview:
@@ -38,7 +38,7 @@ class Preview:
         self._switch, self._tool_seen = None, True
         self._left = []
         self._timer = QtCore.QTimer()
-        self._timer.setInterval(_STEP)
+        self._timer.setInterval(STEP)
         self._timer.timeout.connect(self._grow)
 
     def show(self, plan, op):
@@ -64,10 +64,7 @@ class Preview:
 
     def _show_one(self, plan, op, view):
         """Show an operation with its tool."""
-        root = coin.SoSeparator()
-        style = coin.SoPickStyle()
-        style.style = coin.SoPickStyle.UNPICKABLE
-        root.addChild(style)
+        root = unpickable_node()
         tool = coin.SoSeparator()
         self.transform = coin.SoTransform()
         tool.addChild(self.transform)
@@ -85,10 +82,7 @@ class Preview:
 
     def _show_others(self, plan, view):
         """Show the passes of all operations of a plan, as long as it is the one that is shown."""
-        self._shown_plan, self._others = plan, coin.SoSeparator()
-        style = coin.SoPickStyle()
-        style.style = coin.SoPickStyle.UNPICKABLE
-        self._others.addChild(style)
+        self._shown_plan, self._others = plan, unpickable_node()
         view.getSceneGraph().addChild(self._others)
         done = [op for op in plan.operations if op.done]
         if len(plan.operations) > 1:  # also one alone: what is shown may be one without an axis

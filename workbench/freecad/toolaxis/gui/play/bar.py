@@ -336,4 +336,5 @@ def bodies_text(names, depth):
     """
     from toolaxis.machine.setup import in_tenths
 
-    return translate("ToolAxis", "{} meet by {} mm").format(", ".join(map(shown, sorted(names))), in_tenths(depth))
+    bodies = ", ".join(map(shown, sorted(names)))
+    return translate("ToolAxis", "Collision: {}; {} mm deep").format(bodies, in_tenths(depth))

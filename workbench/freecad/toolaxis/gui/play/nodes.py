@@ -64,6 +64,15 @@ def colour_node(colour, clear=0.0, lit=True):
     return node
 
 
+def unpickable_node():
+    """A separator for what cannot be picked in the view."""
+    node = coin.SoSeparator()
+    style = coin.SoPickStyle()
+    style.style = coin.SoPickStyle.UNPICKABLE
+    node.addChild(style)
+    return node
+
+
 def revolve(name, outline):
     """A part of a tool as a solid of revolution about z.
 

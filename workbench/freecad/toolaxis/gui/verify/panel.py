@@ -227,7 +227,8 @@ def _measures(verdict):
     return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
             (translate("ToolAxis", "Left to clean-up"), f"{100 * verdict.declared / verdict.area:.1f} %"),
-            (translate("ToolAxis", "Of the rest within {}").format(fine_text(greatest_accepted(verdict, "remaining"))),
+            (translate("ToolAxis", "Within {} (rest material excluded)").format(
+                fine_text(greatest_accepted(verdict, "remaining"))),
              share_text(verdict)),
             (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
             (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),

@@ -155,9 +155,9 @@ class QuantityBox(QtWidgets.QAbstractSpinBox):
         self.setFocusPolicy(QtCore.Qt.StrongFocus)
         # its own line: Qt's would be asked for again and again, and Python may answer with the object of a dead widget
         # that lay at the same address
-        self.line = QtWidgets.QLineEdit(self)
-        self.setLineEdit(self.line)
-        self.line.textEdited.connect(self._take)
+        self._line = QtWidgets.QLineEdit(self)
+        self.setLineEdit(self._line)
+        self._line.textEdited.connect(self._take)
         self.editingFinished.connect(self._finish)
         self._show()
 
@@ -197,8 +197,8 @@ class QuantityBox(QtWidgets.QAbstractSpinBox):
     def _show(self):
         self._before = self._value
         text = self.text_of(self._value)
-        if self.line.text() != text:
-            self.line.setText(text)
+        if self._line.text() != text:
+            self._line.setText(text)
 
     def _take(self, text):
         """Take what has been typed so far, where it is a quantity."""
@@ -209,7 +209,7 @@ class QuantityBox(QtWidgets.QAbstractSpinBox):
 
     def _finish(self):
         """Show what was typed in full; where it is no quantity, the one from before."""
-        if value_from_text(self.line.text(), self.unit) is None:
+        if value_from_text(self._line.text(), self.unit) is None:
             self.set_value(self._before)
         else:
             self._show()
