@@ -47,7 +47,7 @@
    <translation>Alle Werkzeugachsen sind erreichbar. Verfahrwege nicht geprüft: Das Werkzeug hat keinen Halter.</translation>
   </message>
   <message>
-   <source>All tool axes can be reached. OK adds the machine to the document.</source>
+   <source>All tool axes can be reached. OK puts the machine into the document.</source>
    <translation>Alle Werkzeugachsen sind erreichbar. OK übernimmt die Maschine in das Dokument.</translation>
   </message>
   <message>
@@ -163,12 +163,12 @@
    <translation>Schätzung und Zählung</translation>
   </message>
   <message>
-   <source>Every face has an axis, but two-point contact was not possible anywhere (reasons: tab Axis). OK adds the operations to the document.</source>
-   <translation>Jede Fläche hat eine Achse, aber Zwei-Punkt-Kontakt war nirgends möglich (Gründe: Reiter Achse). OK übernimmt die Operationen in das Dokument.</translation>
+   <source>Every face has an axis, but two-point contact was not possible anywhere (reasons: tab Axis). OK puts them into the document.</source>
+   <translation>Jede Fläche hat eine Achse, aber Zwei-Punkt-Kontakt war nirgends möglich (Gründe: Reiter Achse). OK übernimmt sie in das Dokument.</translation>
   </message>
   <message>
    <source>Every face has an axis. {} OK puts them into the document.</source>
-   <translation>Jede Fläche hat eine Achse. {} OK stellt sie ins Dokument.</translation>
+   <translation>Jede Fläche hat eine Achse. {} OK übernimmt sie in das Dokument.</translation>
   </message>
   <message>
    <source>Excess over ideal length</source>
@@ -467,8 +467,8 @@
    <translation>Material wird abgetragen</translation>
   </message>
   <message>
-   <source>Results up to date; Verify: {}</source>
-   <translation>Ergebnisse aktuell; Prüfung: {}</translation>
+   <source>Results are up to date; verdict: {}</source>
+   <translation>Die Ergebnisse sind aktuell; Urteil: {}</translation>
   </message>
   <message>
    <source>Roman's rule</source>
@@ -528,31 +528,31 @@
   </message>
   <message>
    <source>Stopped</source>
-   <translation>Angehalten</translation>
+   <translation>Gestoppt</translation>
   </message>
   <message>
    <source>Stopped before the first face had passes.</source>
-   <translation>Angehalten, bevor die erste Fläche Bahnen hatte.</translation>
+   <translation>Gestoppt, bevor die erste Fläche Bahnen hatte.</translation>
   </message>
   <message>
    <source>Stopped with {} finished. {} OK puts what is finished into the document.</source>
-   <translation>Angehalten, fertig: {}. {} OK stellt das Fertige ins Dokument.</translation>
+   <translation>Gestoppt, fertig: {}. {} OK übernimmt das Fertige in das Dokument.</translation>
   </message>
   <message>
    <source>Stopped. {} OK puts what is finished into the document.</source>
-   <translation>Angehalten. {} OK übernimmt das Fertige in das Dokument.</translation>
+   <translation>Gestoppt. {} OK übernimmt das Fertige in das Dokument.</translation>
   </message>
   <message>
    <source>Stopped; the document is unchanged.</source>
-   <translation>Angehalten; das Dokument ist unverändert.</translation>
+   <translation>Gestoppt; das Dokument ist unverändert.</translation>
   </message>
   <message>
    <source>Stopped; the folder is as it was.</source>
-   <translation>Angehalten; der Ordner ist wie zuvor.</translation>
+   <translation>Gestoppt; der Ordner ist wie zuvor.</translation>
   </message>
   <message>
    <source>Stopping</source>
-   <translation>Wird angehalten</translation>
+   <translation>Wird gestoppt</translation>
   </message>
   <message>
    <source>Strip width</source>
@@ -1032,7 +1032,7 @@
   </message>
   <message>
    <source>{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them into the document.</source>
-   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. {} OK stellt sie ins Dokument.</translation>
+   <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. {} OK übernimmt sie in das Dokument.</translation>
   </message>
   <message>
    <source>{} of {} faces have an axis; the reasons are on the tab Axis.</source>

@@ -176,7 +176,8 @@ class RackPlanner:
             failed = faces[order[place]]
             self._done += [fail_face(1, face, self.jobs[-1].tool, why)
                            for face in (failed, *(one.face for one in copies[failed]))]
-        return {faces[order[place]]: found.results[place] for place in sorted(found.results, key=order.__getitem__)}
+        results = {order[place]: one for place, one in found.results.items()}
+        return {faces[k]: results[k] for k in sorted(results)}
 
     def _hand_over(self, face: Face, screened: ScreenedFace, copies: Sequence[AlikeFace], progress: Progress) -> None:
         """Let whoever listens see which tools reach what of a face, and of those that are alike."""

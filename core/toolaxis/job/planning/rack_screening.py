@@ -133,7 +133,7 @@ class RackScreening:
         reach : ReachBits
             Of all tools, as `look_at` found it.
         """
-        cells = self._cells(face)
+        cells = self._cells(face)  # made again: kept for all faces, they would go from process to process
         reached = reach.from_tool(0).any(axis=1)
         largest = np.where(reached.any(axis=0), reached.argmax(axis=0), len(self._jobs))
         tools = tuple(job.tool for job in self._jobs)

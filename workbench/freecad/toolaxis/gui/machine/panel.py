@@ -163,7 +163,7 @@ class MachinePanel(Panel):
             self.told = translate("ToolAxis", "All tool axes can be reached. Axis travels not checked: the tool has "
                                               "no holder."), False
         else:
-            told = translate("ToolAxis", "All tool axes can be reached. OK adds the machine to the document.")
+            told = translate("ToolAxis", "All tool axes can be reached. OK puts the machine into the document.")
             self.told = told, False
         tell(self.form.message, *self.told)
         if found.laid is not None:

@@ -80,7 +80,8 @@ class OperationPanel(Panel):
         if operation.Stale:
             tell(form.message, stale_text(operation), bad=True)
         else:
-            tell(form.message, translate("ToolAxis", "Results up to date; Verify: {}").format(shown(operation.Verdict)))
+            told = translate("ToolAxis", "Results are up to date; verdict: {}")
+            tell(form.message, told.format(shown(operation.Verdict)))
         seconds = operation.MachiningTime.Value
         fill(form.results, [] if self.found is None else [("", measures(self.found, seconds))])
         form.reasons.setText(lines_of(operation.Reasons))

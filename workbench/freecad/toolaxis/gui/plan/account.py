@@ -102,7 +102,7 @@ class ReachedByTool:
         Place in the magazine.
     name : str
     reached : float
-        mm^2 for which it is the largest tool that reaches them.
+        Area on which it is the largest tool that reaches the faces, mm^2.
     machined : float
         mm^2
     """
@@ -134,7 +134,7 @@ def fill_reached(table, tools, area):
 
 
 def _fill(table, heads, rows, colours, told):
-    """Fill a table whose first rows are tools, with their colours and what is told of them when pointed at."""
+    """Fill a table whose first rows are tools: their colours, and what is told where the pointer is on them."""
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)
     table.setColumnCount(len(heads))

@@ -35,7 +35,7 @@ def outcome_sentence(plan):
             done, figures(plan)), True
     if done == count and touched_once(plan):
         return translate("ToolAxis", "Every face has an axis, but two-point contact was not possible anywhere "
-                                     "(reasons: tab Axis). OK adds the operations to the document."), True
+                                     "(reasons: tab Axis). OK puts them into the document."), True
     if done == count:
         return translate("ToolAxis", "Every face has an axis. {} OK puts them into the document.").format(
             figures(plan)), False
