@@ -351,6 +351,10 @@
    <translation>Keine Karte: Diese Achse wurde nicht für sich gesucht. Teilflächen haben sie gemeinsam, sie ist vorgegeben oder folgt aus dem Verfahren.</translation>
   </message>
   <message>
+   <source>No usable position on this machine: {}</source>
+   <translation>Auf dieser Maschine keine brauchbare Stellung: {}</translation>
+  </message>
+  <message>
    <source>No vertex is selected: select a vertex of the part in the 3D view</source>
    <translation>Kein Punkt ist ausgewählt: in der 3D-Ansicht einen Punkt des Teils auswählen</translation>
   </message>
@@ -673,10 +677,6 @@
   <message>
    <source>This axis cannot be used.</source>
    <translation>Diese Achse ist nicht brauchbar.</translation>
-  </message>
-  <message>
-   <source>This machine cannot reach the tool axis of: {}</source>
-   <translation>Werkzeugachse auf dieser Maschine nicht erreichbar: {}</translation>
   </message>
   <message>
    <source>Tilt from Z</source>

@@ -293,7 +293,7 @@ def test_a_machine_is_picked_and_moves(desk, leaning):
 def test_what_cannot_be_held_is_told(desk, leaning):
     form = machine_panel(desk, "four-axis-a", (0, 0, 0))
     assert desk.text(form.angles, 0, 0) == "no position reaches it"
-    assert "This machine cannot reach the tool axis of" in form.message.text() and not form.play.isEnabled()
+    assert "No usable position on this machine" in form.message.text() and not form.play.isEnabled()
     desk.press(desk.standard_button("Cancel"))
     desk.wait(lambda: desk.form("ToolAxisMachine") is None, "the panel closes")
 

@@ -157,7 +157,7 @@ class MachinePanel(Panel):
         if found.laid is not None:
             self.bar.show(found.laid, looks=True)
         if lost:
-            told = translate("ToolAxis", "This machine cannot reach the tool axis of: {}")
+            told = translate("ToolAxis", "No usable position on this machine: {}")
             self.told = told.format(", ".join(lost)), True
         elif any(one.tool.gauge_length is None for one in found.operations):
             self.told = translate("ToolAxis", "All tool axes can be reached. Axis travels not checked: the tool has "
