@@ -39,12 +39,14 @@ _EVEN = 0.9
 _STEPS, _ON_THE_WAY = 60, 17
 #: Greatest distance, mm, of control points that are one point, a pole.
 _ONE_POINT = 1e-9
+#: Share of the longest leg of a net up to which another one has no length, and so no direction.
+_VANISHES = 1e-9
 #: Greatest share of a weight by which it differs from another that is meant to be the same.
 _ROUNDING = 1e-12
 #: Cells that a knot span is cut into, and cells along a parameter, at least; control points of nets at once.
 _PARTS, _CELLS, _AT_ONCE = 2, 8, 500_000
 #: How many times finer cells are tried where some of those may turn over.
-_FINER = (2, 4)
+_FINER = (2, 4, 8)
 #: Cells that are tried at most, so that it takes less than a second.
 _MOST_CELLS = 20_000
 
@@ -53,7 +55,7 @@ class TurningCells(NamedTuple):
     """Cells of a surface's parameters, and in which of them Su x Sv may turn over.
 
     lines_u (nu + 1,), lines_v (nv + 1,): borders of the cells;  turning (nu, nv): False where it surely does not, and
-    the cell is no piece of a fold itself.
+    the cell is no piece of a fold and not next to one.
     """
 
     lines_u: Array
@@ -103,27 +105,30 @@ def find_turning_cells(data: SurfaceData) -> TurningCells:
     -----
     Su of a piece lies in the cone of the legs of its control net along u, Sv in that of the legs along v.  Where the
     two cones share no line, Su and Sv are nowhere parallel.  Where that is so of all cells, however small, none is
-    turned over.  Otherwise a cell shorter than a fold may lie within one.  At a pole, where a whole side of a piece is
-    one point, the derivative along that side is the distance from it times a factor: the cone is that of the factor.
+    turned over.  Otherwise cells next to those that may turn over may lie within a fold, or beside it.  At a pole,
+    where a whole side of a piece is one point, the derivative along that side is the distance from it times a factor:
+    the cone is that of the factor.
     """
     found = _NetCells.of(data, 1)
+    coarse = found.turning.size
     for finer in _FINER:
-        if not found.turning.any() or found.turning.size * finer**2 > _MOST_CELLS:
+        if not found.turning.any() or coarse * finer**2 > _MOST_CELLS:
             break
-        closer = _NetCells.of(data, finer)
-        if not closer.turning.any():
-            found = closer
-    if not found.turning.any():
-        return TurningCells(*found.lines, np.zeros_like(found.turning))
-    return TurningCells(*found.lines, found.turning | found.short)
+        found = _NetCells.of(data, finer)
+    return TurningCells(*found.lines, found.turning_or_near)
 
 
 class _NetCells(NamedTuple):
-    """Cells of a surface: their lines along u and v, which may turn over, and which are no longer than a fold."""
+    """Cells of a surface.
+
+    lines : their borders along u and v
+    turning : (nu, nv), which of them may turn over
+    lengths : (2, nu, nv), their least lengths along u and v, mm
+    """
 
     lines: tuple[Array, Array]
     turning: Bools
-    short: Bools
+    lengths: Array
 
     @staticmethod
     def of(data: SurfaceData, finer: int) -> "_NetCells":
@@ -135,8 +140,31 @@ class _NetCells(NamedTuple):
         nets = [bezier_nets(data, lines_u[first:first + step + 1], lines_v)
                 for first in range(0, len(lines_u) - 1, step)]
         turning = np.concatenate([_turning(one) for one in nets])
-        short = np.concatenate([_short(one[..., :3] / one[..., 3:]) for one in nets])
-        return _NetCells((lines_u, lines_v), turning, short)
+        lengths = np.concatenate([_lengths(one[..., :3] / one[..., 3:]) for one in nets], axis=1)
+        return _NetCells((lines_u, lines_v), turning, lengths)
+
+    @property
+    def turning_or_near(self) -> Bools:
+        """Which cells may turn over, or begin so near one that may that a fold can reach into them, (nu, nv)."""
+        found = self.turning
+        if not found.any():
+            return found
+        for axis in (0, 1):
+            cells, lengths = np.moveaxis(found, axis, 0), np.moveaxis(self.lengths[axis], axis, 0)
+            after = _within_reach_after(cells, lengths)
+            before = _within_reach_after(cells[::-1], lengths[::-1])[::-1]
+            found = np.moveaxis(cells | after | before, 0, axis)
+        return found
+
+
+def _within_reach_after(cells: Bools, lengths: Array) -> Bools:
+    """Cells (n, m) that begin no farther behind marked ones than a fold is long, by the cells' lengths along n, mm."""
+    found = np.zeros_like(cells)
+    behind = np.full(cells.shape[1], np.inf)
+    for k in range(len(cells)):
+        found[k] = behind <= 2 * REACH
+        behind = np.where(cells[k], 0.0, behind + lengths[k])
+    return found
 
 
 def _cell_lines(knots: Array, degree: int, finer: int) -> Array:
@@ -215,21 +243,21 @@ def _turning_beside_pole(nets: Array) -> Bools:
 def _cone(legs: Array, slack: Array) -> tuple[Array, Array]:
     """Axis (nu, nv, 3) and half angle (nu, nv), rad, of a cone around legs (nu, nv, a, b, 3), each off by its slack."""
     size = np.linalg.norm(legs, axis=-1)
+    vanishes = size <= _VANISHES * size.max(axis=(2, 3), keepdims=True)
     ways = legs / np.where(size > 0, size, 1.0)[..., None]
     total = ways.sum(axis=(2, 3))
     length = np.linalg.norm(total, axis=-1, keepdims=True)
     axis = total / np.where(length > 0, length, 1.0)
     angle = np.arccos(np.clip(dot(ways, axis[:, :, None, None]), -1.0, 1.0))
     angle += np.arcsin(np.minimum(slack / np.where(size > 0, size, np.finfo(float).tiny), 1.0))
-    return axis, np.where((size > 0) | (slack > 0), angle, 0.0).max(axis=(2, 3))
+    return axis, np.where(vanishes, np.pi, angle).max(axis=(2, 3))
 
 
-def _short(points: Array) -> Bools:
-    """Which Bezier nets (nu, nv, pu + 1, pv + 1, 3) have a side no longer than a fold."""
+def _lengths(points: Array) -> Array:
+    """Least lengths of the sides of Bezier nets (nu, nv, pu + 1, pv + 1, 3) along u and along v, (2, nu, nv) mm."""
     along_u = points[:, :, -1, [0, -1]] - points[:, :, 0, [0, -1]]
     along_v = points[:, :, [0, -1], -1] - points[:, :, [0, -1], 0]
-    lengths = np.linalg.norm([along_u, along_v], axis=-1)
-    return np.asarray((lengths < 2 * REACH).any(axis=(0, 3)))
+    return np.asarray(np.linalg.norm([along_u, along_v], axis=-1).min(axis=-1))
 
 
 def find_folds(surface: "NurbsSurface", uv: Array, normal: Array) -> Folds:
