@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import count
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
@@ -211,58 +211,125 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     _check_most_tools(most_tools)
     check_count(regions)
     check_count(orientations, "orientations")
-    mounting, allowed = _machine(machine, limits, offset)
-    rack = _rack(tool, float(scallop), (feedrate, spindle))
-    cutter = rack.tools[0]
+    mounting, allowed = _read_machine(machine, limits, offset)
+    rack = _load_rack(tool, float(scallop), (feedrate, spindle))
     objective = _usual_objective(rack, mounting) if objective is None else objective
-    limits_kept = Tolerance.of(tolerance)
-    if least_lean is not None:
-        limits_kept = replace(limits_kept, least_lean=float(least_lean))
+    kept = _read_tolerance(tolerance, least_lean)
     given = read_division(division) if isinstance(division, str) else tuple(division or ())
+    own_machine = None if mounting is None else mounting.machine
+    own_roughness = None if roughness is None else float(roughness)
     chosen = check_strategy(strategy, Asked(
-        cutter, None if mounting is None else mounting.machine, method, objective,
-        None if roughness is None else float(roughness), orientations, held_in(given), passes=passes,
-        least_lean=limits_kept.least_lean, greatest_step_over=float(greatest_step_over), lead=float(lead)))
-    short = limits or (machine if mounting is None else None)
+        rack.tools[0], own_machine, method, objective, own_roughness, orientations, held_in(given), passes=passes,
+        least_lean=kept.least_lean, greatest_step_over=float(greatest_step_over), lead=float(lead)))
+    limits_given = limits or (machine if mounting is None else None)
     inputs = PlanInputs(
         scallop=float(scallop), allowance=float(allowance), method=chosen.name if chosen.moves else method,
-        objective=objective, direction=direction, limits=short if isinstance(short, str) else format_limits(allowed),
-        feedrate=FEEDRATE if feedrate is None else float(feedrate),
-        spindle=SPINDLE if spindle is None else float(spindle), tolerance=limits_kept, rapid=float(rapid),
-        roughness=chosen.roughness if roughness is None else float(roughness), limit=float(limit), passes=passes,
+        objective=objective, direction=direction, limits=_limits_text(limits_given, allowed),
+        feedrate=_given_or(feedrate, FEEDRATE), spindle=_given_or(spindle, SPINDLE), tolerance=kept, rapid=float(rapid),
+        roughness=_given_or(own_roughness, chosen.roughness), limit=float(limit), passes=passes,
         avoid=numbers_to_avoid(avoid), held=held, stock=float(stock), greatest_step_over=float(greatest_step_over),
         allowance_on=parse_allowances(allowance_on), lead=float(lead), origin=origin,
         stock_box=format_margins(parse_margins(stock_box)))
     _check_tools(inputs, rack, mounting)
-    loaded = inputs.prepare_part(load(part))
-    inputs = replace(inputs, avoid=(loaded.original or loaded).avoided)
-    check_not_avoided(loaded, (loaded.face(one.face) for one in given))
-    if len(rack.tools) > 1:
-        check_rack_inputs(RackInputs(inputs.method, chosen.moves, regions, orientations is not None, bool(given),
-                                     compare))
-    loaded, numbers, pattern = _join_faces(loaded, faces, rack, chosen, progress)
-    loaded = loaded.with_warnings(*tool_warnings(loaded, 2.0 * rack.tools[-1].radius), *not_divided(loaded, given),
-                                  *rack.warnings)
-    if held:
-        _check_held_side(given, chosen)
-    bodies = tuple(load(body) for body in _list_obstacles(obstacles))
-    chosen_faces = choose_faces(loaded, numbers)
-    _check_allowances(loaded)
+    request = _PlanRequest(
+        inputs, rack, chosen, mounting, allowed, given, faces=faces, regions=regions, orientations=orientations,
+        obstacles=obstacles, datum=datum, compare=compare, most_tools=most_tools, workers=workers)
+    return _make_plan(part, request, progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _PlanRequest:
+    """What a plan is asked for, read and checked as far as that goes without the part; the rest as `plan` takes it."""
+
+    inputs: PlanInputs
+    rack: ToolLibrary
+    strategy: Strategy
+    mounting: Mounting | None
+    limits: AxisLimits | None
+    division: tuple[SubSurface, ...]
+    faces: Sequence[int | Sequence[int]] | str | None
+    regions: int | str | None
+    orientations: int | str | None
+    obstacles: Any
+    datum: Sequence[float]
+    compare: bool
+    most_tools: int | None
+    workers: int | None
+
+    @property
+    def has_several_tools(self) -> bool:
+        """Whether tools are compared."""
+        return len(self.rack.tools) > 1
+
+
+class _JoinedPart(NamedTuple):
+    """A part with the faces joined that are machined as one, their numbers, and its blades where there are any."""
+
+    part: Part
+    numbers: Any
+    pattern: Pattern | None
+
+
+def _make_plan(source: Any, request: _PlanRequest, progress: Progress) -> Plan:
+    """Read the part, plan what is asked for of it, and bring the operations into order."""
+    loaded = request.inputs.prepare_part(load(source))
+    inputs = replace(request.inputs, avoid=(loaded.original or loaded).avoided)
+    check_not_avoided(loaded, (loaded.face(one.face) for one in request.division))
+    if request.has_several_tools:
+        _check_for_rack(request)
+    joined = _join_faces(loaded, request, progress)
+    part = _add_warnings(joined.part, request)
+    if inputs.held:
+        _check_held_side(request.division, request.strategy)
+    bodies = tuple(load(body) for body in _list_obstacles(request.obstacles))
+    chosen_faces = choose_faces(part, joined.numbers)
+    _check_allowances(part)
     if inputs.stock > 0:
-        loaded = loaded.with_stock(inputs.stock, (number for face in chosen_faces for number in face.numbers))
-    job = PlanningJob(loaded, cutter, inputs, allowed, bodies, datum_of(inputs, datum, loaded), regions, orientations,
-                      check_workers(workers), machine=mounting, division=given)
-    free, in_clamping = cut_faces(loaded, chosen_faces)
-    with use_cores(workers):
-        if len(rack.tools) > 1:
-            jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=regions != 1)
-                    for tool in rack.tools]
-            whole_part = None if pattern is None else replace(pattern, part=loaded)
-            made = _plan_rack(jobs, free, (whole_part, most_tools), progress)
+        numbers = (number for face in chosen_faces for number in face.numbers)
+        part = part.with_stock(inputs.stock, numbers)
+    job = PlanningJob(part, request.rack.tools[0], inputs, request.limits, bodies,
+                      datum_of(inputs, request.datum, part), request.regions, request.orientations,
+                      check_workers(request.workers), machine=request.mounting, division=request.division)
+    free, in_clamping = cut_faces(part, chosen_faces)
+    with use_cores(request.workers):
+        if request.has_several_tools:
+            made = _plan_with_rack(job, free, joined.pattern, request, progress)
         else:
-            whole = faces is None and _is_untouched(loaded) and inputs.method in METHODS
-            made = _plan_part(job, free, (whole, compare), progress)
-        return _tell_apart(_order_operations(made, progress), free, in_clamping)
+            is_whole = request.faces is None and _is_untouched(part) and inputs.method in METHODS
+            made = _plan_part(job, free, (is_whole, request.compare), progress)
+        ordered = _order_operations(made, progress)
+        return _tell_apart(ordered, free, in_clamping)
+
+
+def _read_tolerance(tolerance: ToleranceLike, least_lean: float | None) -> Tolerance:
+    """All tolerances, with the least lean that is given beside them."""
+    kept = Tolerance.of(tolerance)
+    return kept if least_lean is None else replace(kept, least_lean=float(least_lean))
+
+
+def _limits_text(given: Any, allowed: AxisLimits | None) -> str:
+    """Limits of the axis as text: as they were given where that was one."""
+    return given if isinstance(given, str) else format_limits(allowed)
+
+
+def _given_or(value: float | None, usual: float) -> float:
+    """A number that is given, or the usual one."""
+    return usual if value is None else float(value)
+
+
+def _check_for_rack(request: _PlanRequest) -> None:
+    """Refuse what is planned with one tool only."""
+    divides = request.orientations is not None
+    check_rack_inputs(RackInputs(request.inputs.method, request.strategy.moves, request.regions, divides,
+                                 bool(request.division), request.compare))
+
+
+def _add_warnings(part: Part, request: _PlanRequest) -> Part:
+    """A part with what is to be said of its size beside the tools, of its division by hand, and of the tools."""
+    smallest = request.rack.tools[-1]
+    of_unit = tool_warnings(part, 2.0 * smallest.radius)
+    of_division = not_divided(part, request.division)
+    return part.with_warnings(*of_unit, *of_division, *request.rack.warnings)
 
 
 def _check_tools(inputs: PlanInputs, rack: ToolLibrary, mounting: Mounting | None) -> None:
@@ -282,25 +349,27 @@ def _check_allowances(part: Part) -> None:
             part.allowances.check_alike(face)
 
 
-def _join_faces(part: Part, faces: Sequence[int | Sequence[int]] | str | None, rack: ToolLibrary, chosen: Strategy,
-                progress: Progress) -> tuple[Part, Any, Pattern | None]:
-    """A part with the faces joined that are machined as one, their numbers, and its blades where there are any.
+def _join_faces(part: Part, request: _PlanRequest, progress: Progress) -> _JoinedPart:
+    """A part with the faces joined that are machined as one.
 
     Blades are looked for where several tools plan a part of which no faces are named; else it is joined to skins then.
     """
-    asked, pattern = faces is not None, None
-    if len(rack.tools) > 1 and not asked:
+    faces, pattern = request.faces, None
+    if request.has_several_tools and faces is None:
         _tell(progress, "looking for blades")
         pattern = _find_blades(part, progress)
         faces = "skins" if pattern is None else None
     if pattern is not None:
         part = pattern.part
     _tell(progress, "joining faces")
+    in_layers = request.strategy.in_layers
     # Layers are plane sections, to which iso-parametric lines do not matter.
-    joined, numbers = with_joined(part, faces, pi if chosen.in_layers else GREATEST_CORNER, _skin_width(rack), asked)
-    if chosen.in_layers:
+    corner = pi if in_layers else GREATEST_CORNER
+    is_asked = request.faces is not None
+    joined, numbers = with_joined(part, faces, corner, _skin_width(request.rack), is_asked)
+    if in_layers:
         joined, numbers = with_rings(joined, numbers)
-    return joined, numbers, pattern
+    return _JoinedPart(joined, numbers, pattern)
 
 
 def _is_untouched(part: Part) -> bool:
@@ -316,14 +385,17 @@ def _tell(progress: Progress, stage: str) -> None:
 
 def _check_most_tools(most_tools: int | None) -> None:
     """That a greatest number of tools is one."""
-    if most_tools is not None and (isinstance(most_tools, bool) or not isinstance(most_tools, int) or most_tools < 1):
+    if most_tools is None:
+        return
+    is_whole = isinstance(most_tools, int) and not isinstance(most_tools, bool)
+    if not is_whole or most_tools < 1:
         raise InvalidInput(f"most_tools is {most_tools!r}: it must be a whole number above zero")
 
 
 def _usual_objective(rack: ToolLibrary, mounting: Mounting | None) -> str:
     """What is least unless it is said: time where tools are compared on a machine that states its limits."""
-    timed = len(rack.tools) > 1 and mounting is not None and not mounting.machine.unstated
-    return "time" if timed else "length"
+    states_limits = mounting is not None and not mounting.machine.unstated
+    return "time" if len(rack.tools) > 1 and states_limits else "length"
 
 
 def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
@@ -339,27 +411,33 @@ def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
 def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:
     """A plan that tells what of its faces is held in the clamping, hidden in a skin, or was not begun."""
     with activate_progress(NO_PROGRESS):  # what is finished is told of, whoever wants to stop
-        return replace(add_hidden(add_not_begun(plan, faces), faces), held=held)
+        with_not_begun = add_not_begun(plan, faces)
+        with_hidden = add_hidden(with_not_begun, faces)
+        return replace(with_hidden, held=held)
 
 
-def _rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,
-          rates: tuple[float | None, float | None]) -> ToolLibrary:
+def _load_rack(tool: ToolSource | Sequence[ToolSource] | None, scallop: float,
+               rates: tuple[float | None, float | None]) -> ToolLibrary:
     """The tools in the order in which they are used, the large ones first, at the rates that are given for all."""
     found = load_library(tool)
-    feedrate, spindle = rates
-    tools = [replace(one, feedrate=one.feedrate if feedrate is None else None,
-                     spindle=one.spindle if spindle is None else None) for one in found.tools]
-    small = [one for one in tools if scallop >= one.radius]
-    left = tuple(f"{one.shop_name} is left out: its radius is not above the scallop height, {scallop:g} mm"
-                 for one in small)
-    if len(small) == len(tools):  # what is wrong is said of the inputs
-        small, left = [], ()
-    kept = [one for one in tools if one not in small]
+    tools = [_with_rates(one, *rates) for one in found.tools]
+    kept = [one for one in tools if one.radius > scallop]
+    warnings = [f"{one.shop_name} is left out: its radius is not above the scallop height, {scallop:g} mm"
+                for one in tools if one.radius <= scallop]
+    if not kept:  # what is wrong is said of the inputs
+        kept, warnings = tools, []
     kept.sort(key=lambda one: (-one.radius, one.corner_radius, one.half_angle, one.number))
-    return ToolLibrary(_numbered(kept), (*found.warnings, *left))
+    return ToolLibrary(_number_tools(kept), (*found.warnings, *warnings))
 
 
-def _numbered(tools: Sequence[Tool]) -> tuple[Tool, ...]:
+def _with_rates(tool: Tool, feedrate: float | None, spindle: float | None) -> Tool:
+    """A tool without own rates in place of those that are given for all."""
+    own_feedrate = tool.feedrate if feedrate is None else None
+    own_spindle = tool.spindle if spindle is None else None
+    return replace(tool, feedrate=own_feedrate, spindle=own_spindle)
+
+
+def _number_tools(tools: Sequence[Tool]) -> tuple[Tool, ...]:
     """Tools of which each has a place in the magazine where there are several: those without get free ones."""
     if len(tools) == 1:
         return tuple(tools)
@@ -390,7 +468,8 @@ def group_faces(part: Any, tools: Sequence[ToolSource], inputs: PlanInputs, blad
     if blades and _find_blades(loaded, progress) is not None:
         return ()
     with activate_progress(progress):
-        return find_skins(loaded, _skin_width(_rack(tools, inputs.scallop, (None, None)))).joined
+        rack = _load_rack(tools, inputs.scallop, (None, None))
+        return find_skins(loaded, _skin_width(rack)).joined
 
 
 def _skin_width(rack: ToolLibrary) -> float:
@@ -407,21 +486,24 @@ def _find_blades(part: Part, progress: Progress) -> Pattern | None:
     return None
 
 
-def _plan_rack(jobs: Sequence[PlanningJob], faces: Sequence[Face], asked: tuple[Pattern | None, int | None],
-               progress: Progress) -> Plan:
-    """The plan of a job with each of several tools: blade by blade where there is a pattern, with so many at most."""
-    pattern, most = asked
+def _plan_with_rack(job: PlanningJob, faces: Sequence[Face], pattern: Pattern | None, request: _PlanRequest,
+                    progress: Progress) -> Plan:
+    """The plan of a job with each of several tools: blade by blade where there is a pattern."""
+    may_divide = request.regions != 1
+    jobs = [replace(job, tool=tool, one_by_one=False, regions=None, for_time=may_divide) for tool in request.rack.tools]
     with activate_progress(progress):
         try:
-            _in_cells(jobs[0], progress)
+            _in_cells(job, progress)
             if pattern is not None:
-                made = plan_blades_with_rack(jobs, pattern, most, progress)
+                bladed = replace(pattern, part=job.part)
+                made = plan_blades_with_rack(jobs, bladed, request.most_tools, progress)
             else:
                 area = sum(face.area for face in faces)
-                made = RackPlanner([replace(job, asked_area=area) for job in jobs], most).plan(faces, progress)
+                by_area = [replace(one, asked_area=area) for one in jobs]
+                made = RackPlanner(by_area, request.most_tools).plan(faces, progress)
             return went_on(made, lambda plan: with_unreachable(plan, jobs, progress))
         except Cancelled:
-            return replace(jobs[0].empty(), tools=tuple(job.tool for job in jobs))
+            return replace(jobs[0].empty(), tools=request.rack.tools)
 
 
 def _plan_part(job: PlanningJob, faces: Sequence[Face], asked: tuple[bool, bool], progress: Progress) -> Plan:
@@ -461,14 +543,25 @@ def _plan_bladed(job: PlanningJob, compare: bool, progress: Progress) -> tuple[P
 def _compare_methods(job: PlanningJob, made: Plan, faces: Sequence[Face], progress: Progress) -> Plan:
     """A plan with what other methods come to."""
     plain = replace(job, part=made.part, regions=None, orientations=None, division=())
+    pieces = _smooth_pieces_of(made.part, faces, job.tool)
+
+    def _by_method(name: str, some: Sequence[Face]) -> Plan:
+        other = plain.by(name).carried_out(some, progress.within(name))
+        return _in_time(other)
+
+    timed = went_on(made, _in_time)
+    return went_on(timed, lambda plan: compare_methods(plan, pieces, _by_method))
+
+
+def _smooth_pieces_of(part: Part, faces: Sequence[Face], tool: Tool) -> list[Face]:
+    """What one axis each can machine of some faces, as they stand in a plan's part and in their order."""
     asked = [number for face in faces for number in face.numbers]
     # A skin that was taken apart is none in the plan's part.
-    there = [face for face in made.part.faces if set(face.numbers) <= set(asked)]
+    there = [face for face in part.faces if set(face.numbers) <= set(asked)]
     there.sort(key=lambda face: asked.index(face.number))
-    there = [face for face in (cut_face(one, made.part.held) for one in there) if face is not None]
-    pieces = [target.face for target in smooth_pieces(there, job.tool) if target.ended is None]
-    return went_on(went_on(made, _in_time), lambda plan: compare_methods(
-        plan, pieces, lambda name, some: _in_time(plain.by(name).carried_out(some, progress.within(name)))))
+    cut = [cut_face(face, part.held) for face in there]
+    free = [face for face in cut if face is not None]
+    return [target.face for target in smooth_pieces(free, tool) if target.ended is None]
 
 
 def _in_time(plan: Plan) -> Plan:
@@ -479,12 +572,13 @@ def _in_time(plan: Plan) -> Plan:
         except ToolAxisError:  # Cancelled among them
             raise
         except Exception as reason:
-            lost = {op.number: fail_operation(op, fault(reason)) for op in plan.operations
-                    if op.done and op.face.label == piece_of(reason)}
-            if not lost:
+            failing = [op for op in plan.operations if op.done and op.face.label == piece_of(reason)]
+            if not failing:
                 raise
-            plan = replace(plan, operations=tuple(lost.get(op.number, op) for op in plan.operations),
-                           outcome="cancelled" if plan.outcome == "cancelled" else "incomplete")
+            lost = {op.number: fail_operation(op, fault(reason)) for op in failing}
+            operations = tuple(lost.get(op.number, op) for op in plan.operations)
+            outcome = "cancelled" if plan.outcome == "cancelled" else "incomplete"
+            plan = replace(plan, operations=operations, outcome=outcome)
 
 
 def _order_operations(plan: Plan, progress: Progress) -> Plan:
@@ -495,7 +589,8 @@ def _order_operations(plan: Plan, progress: Progress) -> Plan:
     if found.outcome != "cancelled":
         return found
     with activate_progress(NO_PROGRESS):  # what is finished is kept
-        return replace(went_on(replace(found, outcome="incomplete"), add_times), outcome="cancelled")
+        as_others = replace(found, outcome="incomplete")
+        return replace(went_on(as_others, add_times), outcome="cancelled")
 
 
 def _in_cells(job: PlanningJob, progress: Progress) -> None:
@@ -531,8 +626,8 @@ def _list_obstacles(obstacles: Any) -> list[Any]:
     return [obstacles] if obstacles else []
 
 
-def _machine(machine: MachineLike | None, limits: AxisLimits | str | None,
-             offset: ArrayLike | None) -> tuple[Mounting | None, AxisLimits | None]:
+def _read_machine(machine: MachineLike | None, limits: AxisLimits | str | None,
+                  offset: ArrayLike | None) -> tuple[Mounting | None, AxisLimits | None]:
     """The machine with the part on it, if one is given, and the other limits of the axis."""
     if isinstance(machine, str) and not machine.startswith(SHORT_FORMS):
         machine = load_machine(machine) if machine else None
