@@ -47,9 +47,10 @@ class AxisCones:
     def radius(self) -> Array:
         """No axis is farther than this from the middle of its cone, (n,) rad."""
         corner = self.place[:, None] + 2 * _QUARTERS * self.half[:, None, None]
-        ends = _directions(np.repeat(self.side, 4), corner.reshape(-1, 2)).reshape(-1, 4, 3)
+        axes = _directions(np.repeat(self.side, 4), corner.reshape(-1, 2)).reshape(-1, 4, 3)
+        angles = np.asarray(angle_between(axes, self.middle[:, None]))
         # The sides of a cone are parts of great circles: the farthest axis lies in a corner.
-        return np.asarray(np.asarray(angle_between(ends, self.middle[:, None])).max(axis=1, initial=0.0))
+        return np.asarray(angles.max(axis=1, initial=0.0))
 
     def pick(self, rows: Bools | Indices) -> "AxisCones":
         """Some of the cones.
@@ -62,8 +63,10 @@ class AxisCones:
 
     def halve(self) -> "AxisCones":
         """Four cones in place of each, those of one together."""
-        place = (self.place[:, None] + _QUARTERS * self.half[:, None, None]).reshape(-1, 2)
-        return AxisCones(np.repeat(self.side, 4), place, np.repeat(self.half / 2, 4))
+        side = np.repeat(self.side, 4)
+        middle = self.place[:, None] + _QUARTERS * self.half[:, None, None]
+        half = np.repeat(self.half / 2, 4)
+        return AxisCones(side, middle.reshape(-1, 2), half)
 
     @staticmethod
     def join(parts: Sequence["AxisCones"]) -> "AxisCones":
@@ -73,7 +76,10 @@ class AxisCones:
         ----------
         parts : sequence of AxisCones
         """
-        return AxisCones(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("side", "place", "half")))
+        side = np.concatenate([cones.side for cones in parts])
+        place = np.concatenate([cones.place for cones in parts])
+        half = np.concatenate([cones.half for cones in parts])
+        return AxisCones(side, place, half)
 
     def __len__(self) -> int:
         return len(self.side)
@@ -91,8 +97,8 @@ class CellCones(NamedTuple):
 
     def blocks(self, most: int) -> "list[CellCones]":
         """These pairs, in their order, in lists of `most` pairs at most, none of them empty."""
-        return [self.pick(np.arange(first, min(first + most, len(self.cell))))
-                for first in range(0, len(self.cell), most)]
+        rows = np.arange(len(self.cell))
+        return [self.pick(rows[first:first + most]) for first in range(0, len(rows), most)]
 
     def halve(self) -> "CellCones":
         """Four pairs in place of each, with its cone halved each way."""
@@ -101,7 +107,9 @@ class CellCones(NamedTuple):
     @staticmethod
     def join_all(parts: Sequence["CellCones"]) -> "CellCones":
         """The pairs of all of some lists, of which there is one at least."""
-        return CellCones(np.concatenate([one.cell for one in parts]), AxisCones.join([one.cones for one in parts]))
+        cell = np.concatenate([pairs.cell for pairs in parts])
+        cones = AxisCones.join([pairs.cones for pairs in parts])
+        return CellCones(cell, cones)
 
     def hand_down(self, left: Indices, parent: Indices) -> "CellCones":
         """The pairs of cells for their quarters.
@@ -114,19 +122,25 @@ class CellCones(NamedTuple):
             Of which of these each quarter is one.
         """
         pairs = self.pick(np.argsort(self.cell, kind="stable"))
-        first, last = (np.searchsorted(pairs.cell, left[parent], side=side) for side in ("left", "right"))
+        first = np.searchsorted(pairs.cell, left[parent], side="left")
+        last = np.searchsorted(pairs.cell, left[parent], side="right")
         count = last - first
-        start = np.repeat(first - np.cumsum(count) + count, count)
-        rows = start + np.arange(count.sum())
-        return CellCones(np.repeat(np.arange(len(parent)), count), pairs.cones.pick(rows))
+        quarter = np.repeat(np.arange(len(parent)), count)
+        # The k-th pair of a quarter is the k-th of its parent: places among all, less those before the quarter.
+        before = np.cumsum(count) - count
+        within = np.arange(count.sum()) - np.repeat(before, count)
+        rows = np.repeat(first, count) + within
+        return CellCones(quarter, pairs.cones.pick(rows))
 
 
 def first_cones() -> AxisCones:
     """Cones over the whole sphere, each some 15 degrees wide."""
     half = np.pi / 4 / _FIRST
-    line = half * (2 * np.arange(_FIRST) + 1) - np.pi / 4
-    place = grid_rows(line, line)
-    return AxisCones(np.repeat(np.arange(6), len(place)), np.tile(place, (6, 1)), np.full(6 * len(place), half))
+    middles = half * (2 * np.arange(_FIRST) + 1) - np.pi / 4
+    of_one_side = grid_rows(middles, middles)
+    side = np.repeat(np.arange(6), len(of_one_side))
+    place = np.tile(of_one_side, (6, 1))
+    return AxisCones(side, place, np.full(len(place), half))
 
 
 def shift_of_axis(flat: float, angle: Array, slack: Array, turn: Array) -> Array:
@@ -143,16 +157,21 @@ def shift_of_axis(flat: float, angle: Array, slack: Array, turn: Array) -> Array
     -----
     At an angle t of axis and normal, their turns turn the way by as much over sin t.
     """
-    least = np.sin(np.clip(np.minimum(angle - slack, np.pi - angle - slack), 0.0, np.pi / 2))
-    turned = np.where(least > 0, slack / np.where(least > 0, least, 1.0), np.pi) + turn
-    return np.asarray(2 * flat * np.sin(np.minimum(turned, np.pi) / 2))
+    nearest_to_pole = np.minimum(angle - slack, np.pi - angle - slack)
+    least_sine = np.sin(np.clip(nearest_to_pole, 0.0, np.pi / 2))
+    is_apart = least_sine > 0
+    of_slack = np.where(is_apart, slack / np.where(is_apart, least_sine, 1.0), np.pi)
+    turned = np.minimum(of_slack + turn, np.pi)
+    return np.asarray(2 * flat * np.sin(turned / 2))
 
 
 def _directions(side: Indices, place: Array) -> Array:
     """Unit vectors (n, 3) at places of the sides of the cube."""
-    found = np.empty((len(side), 3))
-    row, axis = np.arange(len(side)), side % 3
-    found[row, axis] = 1.0
-    found[row, (axis + 1) % 3] = np.tan(place[:, 0])
-    found[row, (axis + 2) % 3] = np.tan(place[:, 1])
-    return np.asarray(unit(found)) * np.where(side < 3, 1.0, -1.0)[:, None]
+    row = np.arange(len(side))
+    normal = side % 3
+    on_side = np.empty((len(side), 3))
+    on_side[row, normal] = 1.0
+    on_side[row, (normal + 1) % 3] = np.tan(place[:, 0])
+    on_side[row, (normal + 2) % 3] = np.tan(place[:, 1])
+    sign = np.where(side < 3, 1.0, -1.0)
+    return np.asarray(unit(on_side)) * sign[:, None]

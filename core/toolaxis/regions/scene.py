@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 
 #: Columns of limits: cutter, shank, holder, and what holds the tool above all that is known of it.
 _ABOVE = 3
+#: Columns of `BoundingTree.leaf` that `ReachTree.rect` has: centre, half widths, reference point and its side.
+_RECTANGLE = [0, 1, 2, 3, 8, 9, 10]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +76,12 @@ class ReachScene:
             When obstacles are not faces.
         """
         beside = faces_of(obstacles)
-        faces = tuple(own for face in (*part.faces, *part.faces_of_held_side, *beside) for own in face.own_faces)
+        every = (*part.faces, *part.faces_of_held_side, *beside)
+        faces = tuple(own for face in every for own in face.own_faces)
         tree = merge_reach_trees([cells(face) for face in faces])
-        return ReachScene(part, beside, Tolerance() if tolerance is None else tolerance, limits, allowance, faces, tree,
-                          PartSolid(_closed_bodies(part), tree))
+        solid = PartSolid(_closed_bodies(part), tree)
+        kept = Tolerance() if tolerance is None else tolerance
+        return ReachScene(part, beside, kept, limits, allowance, faces, tree, solid)
 
     def required(self, face: Face, steps_count: bool = True) -> Array:
         """What tools that machine a face have to keep, (faces + 1, 4) mm.
@@ -96,10 +101,10 @@ class ReachScene:
             meet at all, -inf for those that are not held against it.  The last row is the greatest of each column.
         """
         groups = group_surroundings(face, self.tolerance, self.allowance, part=self.part, obstacles=self.obstacles)
-        number = {id(own): row for row, own in enumerate(self.faces)}
+        row_of = {id(own): row for row, own in enumerate(self.faces)}
         table = np.full((len(self.faces) + 1, 4), -np.inf)
         for group in groups:
-            rows = [number[id(own)] for own in group.faces]
+            rows = [row_of[id(own)] for own in group.faces]
             table[rows, :_ABOVE] = group.required
             if not steps_count and group.mismatch is not None:
                 table[rows, 0] -= _highest_steps(group.mismatch)
@@ -116,33 +121,56 @@ class ReachScene:
         required : (faces + 1, 4) array
             Of `required`.
         """
-        outlines = list(tool.outlines.items())
-        name, top = outlines[-1] if outlines else ("cutter" if tool.half_angle == 0 else "shank", None)
+        top = _top_of(tool)
         limits = required.copy()
         own = self.tolerance.for_cutter(tool.radius)  # `required` is asked of all tools, before one is known
         limits[:, COMPONENTS.index("shank")] -= self.tolerance.shank_clearance - own.shank_clearance
-        held = np.isfinite(limits[:, _ABOVE])
-        limits[held, _ABOVE] = limits[held, COMPONENTS.index(name)]
-        radius = tool.profile.top_radius if top is None else float(top[top[:, 1] == top[-1, 1], 0].max())
-        above = [radius, 0.0, 1.0, 0.0, tool.height, tool.height + self._extent, radius, _ABOVE]
-        cutter = limits[:-1, :1]
+        is_checked = np.isfinite(limits[:, _ABOVE])
+        limits[is_checked, _ABOVE] = limits[is_checked, COMPONENTS.index(top.component)]
+        above = [top.radius, 0.0, 1.0, 0.0, tool.height, tool.height + self._extent, top.radius, _ABOVE]
+        of_faces = limits[:-1]
+        of_cutter = of_faces[:, :1]
         # Where the cutter need not keep off a face, what is known of it there says nothing of the others.
-        further = np.where(np.isfinite(limits[:-1]), limits[:-1] - cutter, 0.0).max(axis=0, initial=0.0)
-        margin = float(np.abs(cutter[np.isfinite(cutter)]).max(initial=0.0))
-        return ReachTool(np.vstack([tool.pieces, above]), limits, further, margin)
+        further = np.where(np.isfinite(of_faces), of_faces - of_cutter, 0.0)
+        finite = of_cutter[np.isfinite(of_cutter)]
+        margin = float(np.abs(finite).max(initial=0.0))
+        return ReachTool(np.vstack([tool.pieces, above]), limits, further.max(axis=0, initial=0.0), margin)
 
     @property
     def _extent(self) -> float:
-        """No two places are farther apart, mm."""
-        return 2.0 * float(self.tree.shape[0, 10])
+        """No two points are farther apart, mm."""
+        radius_of_all = float(self.tree.shape[0, 10])
+        return 2.0 * radius_of_all
+
+
+class _ToolTop(NamedTuple):
+    """The uppermost component that is known of a tool, and its radius at the top, mm."""
+
+    component: str
+    radius: float
+
+
+def _top_of(tool: Tool) -> _ToolTop:
+    outlines = list(tool.outlines.items())
+    if not outlines:
+        component = "cutter" if tool.half_angle == 0 else "shank"
+        return _ToolTop(component, tool.profile.top_radius)
+    component, line = outlines[-1]
+    radius, height = line.T
+    is_at_top = height == height[-1]
+    return _ToolTop(component, float(radius[is_at_top].max()))
 
 
 def _closed_bodies(part: Part) -> tuple[tuple[Face, ...], ...]:
     """The faces of the bodies of a part, where all of them bound volumes and no face is missing; else none."""
     if part.left_out or not all(body.closed for body in part.bodies):
         return ()
-    return tuple(tuple(own for number in sorted(set(body.faces)) for own in part.face(number).own_faces)
-                 for body in part.bodies if body.faces)
+    bodies = []
+    for body in part.bodies:
+        faces = [part.face(number) for number in sorted(set(body.faces))]
+        if faces:
+            bodies.append(tuple(own for face in faces for own in face.own_faces))
+    return tuple(bodies)
 
 
 def _highest_steps(mismatch: Mismatch) -> Array:
@@ -152,7 +180,7 @@ def _highest_steps(mismatch: Mismatch) -> Array:
 
 
 def merge_reach_trees(trees: Sequence[BoundingTree]) -> ReachTree:
-    """The trees of several faces under one root, in half the room that they have.
+    """The trees of several faces under one root, in half the memory that they have.
 
     Parameters
     ----------
@@ -160,24 +188,33 @@ def merge_reach_trees(trees: Sequence[BoundingTree]) -> ReachTree:
         One for each face.
     """
     above = len(trees) - 1
-    nodes = above + np.cumsum([0, *(len(tree.nodes) for tree in trees)])
-    leaves = np.cumsum([0, *(len(tree.leaf) for tree in trees)])
-    edges = np.cumsum([0, *(len(tree.edges) for tree in trees)])
+    # Where the nodes, leaves and edges of each tree begin among those of all, and where the last ones end.
+    nodes = above + _starts([len(tree.nodes) for tree in trees])
+    leaves = _starts([len(tree.leaf) for tree in trees])
+    edges = _starts([len(tree.edges) for tree in trees])
     shape = np.empty((nodes[-1], 11), dtype=np.float32)
     link = np.empty((nodes[-1], 5), dtype=np.int32)
     bend = np.empty((leaves[-1], 10), dtype=np.float32)
     rect = np.empty((leaves[-1], 7))
     if above:
-        shape[:above], link[:above] = branch_roots(np.stack([tree.shape[0] for tree in trees]), nodes[:-1])
+        roots = np.stack([tree.shape[0] for tree in trees])
+        shape[:above], link[:above] = branch_roots(roots, nodes[:-1])
     for k, tree in enumerate(trees):
-        own = slice(nodes[k], nodes[k + 1])
-        shape[own] = tree.shape
+        own_nodes = slice(nodes[k], nodes[k + 1])
+        own_leaves = slice(leaves[k], leaves[k + 1])
+        shape[own_nodes] = tree.shape
         shifts = np.array([nodes[k], nodes[k], k, leaves[k]])
-        link[own, :4] = np.where(tree.link[:, :4] >= 0, tree.link[:, :4] + shifts, -1)
-        link[own, 4] = tree.link[:, 4]
-        at = np.flatnonzero(tree.link[:, 3] >= 0)
-        place = leaves[k] + tree.link[at, 3]
-        bend[place] = tree.bend[at]
-        rect[leaves[k]:leaves[k + 1]] = tree.leaf[:, [0, 1, 2, 3, 8, 9, 10]]
-    start = np.concatenate([*(tree.edge_start[:-1] + edges[k] for k, tree in enumerate(trees)), edges[-1:]])
-    return ReachTree(shape, link, bend, rect, start.astype(np.int64), np.vstack([tree.edges for tree in trees]))
+        link[own_nodes, :4] = np.where(tree.link[:, :4] >= 0, tree.link[:, :4] + shifts, -1)
+        link[own_nodes, 4] = tree.link[:, 4]
+        leaf_of_node = tree.link[:, 3]
+        at_leaves = leaf_of_node >= 0
+        bend[leaves[k] + leaf_of_node[at_leaves]] = tree.bend[at_leaves]
+        rect[own_leaves] = tree.leaf[:, _RECTANGLE]
+    starts = [tree.edge_start[:-1] + edges[k] for k, tree in enumerate(trees)]
+    edge_start = np.concatenate([*starts, edges[-1:]]).astype(np.int64)
+    return ReachTree(shape, link, bend, rect, edge_start, np.vstack([tree.edges for tree in trees]))
+
+
+def _starts(counts: list[int]) -> NDArray[np.int64]:
+    """Where each of some blocks begins that stand one after the other, and where the last one ends."""
+    return np.cumsum([0, *counts])

@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,29 +84,32 @@ def verify_plan(plan: Plan, *, spacing: float | None = None, threads: int = 2, w
     """
     done = [op for op in plan.operations if op.path is not None]
     families = _find_families(plan, done)
-    several = min(workers, len(families)) > 1
-    limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+    in_processes = min(workers, len(families)) > 1
+    settings = _Measuring(spacing, 1 if in_processes else threads)
 
     def _judge(k: int, inner: Progress) -> list[OperationVerdict | bytes]:
-        found = _judge_family(plan, done, families[k], (spacing, 1 if several else threads), inner)
-        if not several:
-            return [verdict for verdict, _ in found]
-        return [verdict if task is None else pack_verdict(verdict, _faces_of(task)) for verdict, task in found]
+        found = _judge_family(plan, done, families[k], settings, inner)
+        if in_processes:
+            return [_pack(one) for one in found]
+        return [one.verdict for one in found]
 
     judged = abreast(_judge, len(families), workers, progress)
     found: dict[int, OperationVerdict] = {}
     for k, family in enumerate(families):
         if k in judged.faults:
-            lost = judged.faults[k].sentence
-            found.update({place: not_measured(done[place].name, limits, lost) for place in family})
-        for place, one in zip(family, judged.results.get(k, ()), strict=k in judged.results):
-            if isinstance(one, bytes):
-                one = unpack_verdict(one, _faces_of(_task_at(plan, done, place)))
-            found[place] = one
+            why = judged.faults[k].sentence
+            found.update({place: _not_measured(plan, done[place], why) for place in family})
+        elif k in judged.results:
+            for place, one in zip(family, judged.results[k], strict=True):
+                if isinstance(one, bytes):
+                    task = _task_at(plan, done, place)
+                    one = unpack_verdict(one, _faces_of(task))
+                found[place] = one
     if judged.cancelled and not found:
         raise Cancelled("cancelled by the user")
-    return Verdict(tuple(found[place] for place in sorted(found)),
-                   tuple(op.name for place, op in enumerate(done) if place not in found))
+    verdicts = tuple(found[place] for place in sorted(found))
+    unjudged = tuple(op.name for place, op in enumerate(done) if place not in found)
+    return Verdict(verdicts, unjudged)
 
 
 def _find_families(plan: Plan, done: Sequence[Operation]) -> list[list[int]]:
@@ -114,36 +117,68 @@ def _find_families(plan: Plan, done: Sequence[Operation]) -> list[list[int]]:
     copies = {} if plan.blades is None or plan.obstacles else plan.blades.copies
     found: dict[int, list[int]] = {}
     for place, op in enumerate(done):
-        found.setdefault(copies.get(op.number, op.number), []).append(place)
+        original = copies.get(op.number, op.number)
+        found.setdefault(original, []).append(place)
     return list(found.values())
 
 
-def _judge_family(plan: Plan, done: Sequence[Operation], family: Sequence[int], how: tuple[float | None, int],
-                  progress: Progress) -> list[tuple[OperationVerdict, VerificationTask | None]]:
-    """Verdicts on an operation and its turned copies, each with what was judged; without that where it failed.
+class _Measuring(NamedTuple):
+    """Distance of neighbouring rays, mm, by the size of each face for None, and threads."""
 
-    how : distance of neighbouring rays, mm, and threads
-    """
-    limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+    spacing: float | None
+    threads: int
+
+
+class _Judged(NamedTuple):
+    """A verdict on an operation, and what was judged; None where that failed."""
+
+    verdict: OperationVerdict
+    task: VerificationTask | None
+
+
+class _Measured(NamedTuple):
+    """What was judged, and what was measured of it."""
+
+    task: VerificationTask
+    measurement: OperationMeasurement
+
+
+def _judge_family(plan: Plan, done: Sequence[Operation], family: Sequence[int], settings: _Measuring,
+                  progress: Progress) -> list[_Judged]:
+    """Verdicts on an operation and its turned copies."""
     turned = TurnedCopies()
-    known: tuple[VerificationTask, OperationMeasurement] | None = None
-    found: list[tuple[OperationVerdict, VerificationTask | None]] = []
+    original: _Measured | None = None
+    found: list[_Judged] = []
     for place in family:
-        op, within = done[place], progress.within(f"{done[place].name} ({place + 1} of {len(done)})")
+        op = done[place]
+        within = progress.within(f"{op.name} ({place + 1} of {len(done)})")
         try:
             with activate_progress(progress):
                 task = _task_at(plan, done, place)
-                verdict = None if known is None else _as_copy(turned, task, known, within)
+                verdict = None if original is None else _judge_copy(turned, task, original, within)
                 if verdict is None:
-                    measured = measure(task, *how, within)
-                    verdict = verdict_on(task, measured, within)
-                    known = known or (task, measured)
-                found.append((verdict, task))
+                    measurement = measure(task, settings.spacing, settings.threads, within)
+                    verdict = verdict_on(task, measurement, within)
+                    original = original or _Measured(task, measurement)
+                found.append(_Judged(verdict, task))
         except Cancelled:
             raise
         except Exception as reason:  # nothing is known of this operation; the others are judged
-            found.append((not_measured(op.name, limits, fault(reason).sentence), None))
+            found.append(_Judged(_not_measured(plan, op, fault(reason).sentence), None))
     return found
+
+
+def _not_measured(plan: Plan, op: Operation, why: str) -> OperationVerdict:
+    """The verdict on an operation on which the judge itself failed."""
+    limits = plan.inputs.scallop, plan.inputs.allowance, plan.inputs.tolerance.gouge
+    return not_measured(op.name, limits, why)
+
+
+def _pack(judged: _Judged) -> OperationVerdict | bytes:
+    """A verdict as it goes from one process to another."""
+    if judged.task is None:
+        return judged.verdict
+    return pack_verdict(judged.verdict, _faces_of(judged.task))
 
 
 def _faces_of(task: VerificationTask) -> tuple[Face, ...]:
@@ -151,56 +186,80 @@ def _faces_of(task: VerificationTask) -> tuple[Face, ...]:
     return (*task.targets, *task.skin)
 
 
-def _as_copy(turned: TurnedCopies, task: VerificationTask, source: tuple[VerificationTask, OperationMeasurement],
-             progress: Progress) -> OperationVerdict | None:
+def _judge_copy(turned: TurnedCopies, task: VerificationTask, original: _Measured,
+                progress: Progress) -> OperationVerdict | None:
     """The verdict on a turned copy of an operation that was measured; None where it is none, or would not pass so."""
-    copy = turned.find(source[0], task)
-    measured = None if copy is None else transfer_measurement(task, source[1], copy)
-    found = None if measured is None else verdict_on(task, measured, progress)
-    return found if found is not None and found.passed else None
+    copy = turned.find(original.task, task)
+    if copy is None:
+        return None
+    measurement = transfer_measurement(task, original.measurement, copy)
+    if measurement is None:
+        return None
+    verdict = verdict_on(task, measurement, progress)
+    return verdict if verdict.passed else None
 
 
 def _task_at(plan: Plan, done: Sequence[Operation], place: int) -> VerificationTask:
     """What the judge is to look at of one of some operations."""
-    return _task(plan, done[place], done[place - 1] if place else None)
+    before = done[place - 1] if place else None
+    return _task(plan, done[place], before)
 
 
-def _task(plan: Plan, op: Operation, last: Operation | None = None) -> VerificationTask:
+def _task(plan: Plan, op: Operation, before: Operation | None = None) -> VerificationTask:
     """What the judge is to look at: the part's own faces, where some were joined for planning."""
     assert op.path is not None
-    tolerance = plan.inputs.tolerance.for_cutter(op.tool.radius)
-    around = group_surroundings(op.face, tolerance, plan.inputs.allowance_of(op.face),
-                                part=plan.part_around(op.face.number),
-                                obstacles=[face for body in plan.obstacles for face in body.faces])
-
     targets = own_pieces(op.face)
+    around = _surroundings_for_judge(plan, op, targets)
+    at_walls = [op.face.trimmed(zone.loops) for zone in op.zones if zone.at_wall]
+    declared = tuple(own for face in at_walls for own in own_pieces(face, only_exact=True))
+    fixed_axis = op.orientation.axis if op.orientation.lead is None else None
+    angles_at_start = op.time.rotary if op.time else ()
+    machine = plan.machine
+    on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
+    return VerificationTask(
+        op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
+        plan.inputs.scallop, plan.inputs.allowance_of(op.face), around.skin, around.touching, around.others,
+        op.tool.outlines, plan.inputs.tolerance.for_cutter(op.tool.radius), declared, fixed_axis,
+        machine=None if machine is None else machine.machine, place=on_table, tool_length=op.tool.gauge_length,
+        rotary=op.rotary or angles_at_start, before=_end_of(before, op.tool), held=_side_for_judge(plan),
+        stock=plan.inputs.stock, proud=_proud(plan), greatest_step_over=plan.inputs.greatest_step_over,
+        left_on=_left_on(plan, targets), lead=plan.inputs.lead)
+
+
+class _Surroundings(NamedTuple):
+    """The part's own faces around those that an operation machines, as the judge tells them apart."""
+
+    skin: tuple[Face, ...]
+    touching: tuple[Face, ...]
+    others: tuple[Face, ...]
+
+
+def _surroundings_for_judge(plan: Plan, op: Operation, targets: Sequence[Face]) -> _Surroundings:
+    tolerance = plan.inputs.tolerance.for_cutter(op.tool.radius)
+    obstacles = [face for body in plan.obstacles for face in body.faces]
+    around = group_surroundings(op.face, tolerance, plan.inputs.allowance_of(op.face),
+                                part=plan.part_around(op.face.number), obstacles=obstacles)
+    avoided = _avoided_faces(plan, op)
+    own_key = op.face.number, op.face.label
+    found: dict[str, list[Face]] = {SKIN: [], TOUCHING: [], OTHER: []}
+    for group in around:
+        beside = [face for face in group.faces if (face.number, face.label) != own_key and face not in targets]
+        for own in (own for face in beside for own in own_pieces(face)):
+            is_another_role = own in avoided or own.label == HELD_SIDE
+            if not is_another_role and (group.role == OTHER or own.number not in plan.inputs.avoid):
+                found[group.role].append(own)
+    return _Surroundings(tuple(found[SKIN]), tuple(found[TOUCHING]), (*found[OTHER], *avoided))
+
+
+def _avoided_faces(plan: Plan, op: Operation) -> tuple[Face, ...]:
+    """The part's own faces that no tool may touch, none of which an operation may machine."""
     whole = plan.part.original or plan.part
     avoided = tuple(face for face in whole.faces if face.number in plan.inputs.avoid)
     touched = [face for face in avoided if face.number in op.face.numbers]
     if touched:
         raise InvalidInput(f"operation {op.name} machines face {touched[0].label}, which is to be avoided: make the "
                            "plan again")
-
-    def _of(*roles: str) -> tuple[Face, ...]:
-        return tuple(own for group in around if group.role in roles for face in group.faces
-                     if (face.number, face.label) != (op.face.number, op.face.label) and face not in targets
-                     for own in own_pieces(face)
-                     if own not in avoided and own.label != HELD_SIDE
-                     and (group.role == OTHER or own.number not in plan.inputs.avoid))
-
-    left = tuple(own for zone in op.zones if zone.at_wall
-                 for own in own_pieces(op.face.trimmed(zone.loops), only_exact=True))
-    machine = plan.machine
-    on_table = None if machine is None or machine.table_from_part is None else placement(machine.table_from_part)
-    return VerificationTask(op.name, op.path.cl, op.path.axis, op.path.kind, op.tool.profile, targets,
-                            plan.inputs.scallop, plan.inputs.allowance_of(op.face), _of(SKIN), _of(TOUCHING),
-                            (*_of(OTHER), *avoided), op.tool.outlines, tolerance, left,
-                            op.orientation.axis if op.orientation.lead is None else None,
-                            machine=None if machine is None else machine.machine, place=on_table,
-                            tool_length=op.tool.gauge_length, rotary=op.rotary or (op.time.rotary if op.time else ()),
-                            before=_end_of(last, op.tool), held=_side_for_judge(plan), stock=plan.inputs.stock,
-                            proud=_proud(plan), greatest_step_over=plan.inputs.greatest_step_over,
-                            left_on=_left_on(plan, targets), lead=plan.inputs.lead)
+    return avoided
 
 
 def _side_for_judge(plan: Plan) -> HeldSide | None:
@@ -222,16 +281,20 @@ def _left_on(plan: Plan, targets: Sequence[Face]) -> tuple[tuple[Face, float], .
     """The part's own faces with an allowance, by the inputs in plan.json, without those that an operation machines."""
     if not plan.inputs.allowance_on:
         return ()
-    own = {face.number for face in targets}
-    every = [one for face in plan.part.faces for one in own_pieces(face) if one.number not in own]
-    rows = [(one, plan.inputs.allowance_of(one)) for one in every]
-    return tuple((one, left) for one, left in rows if left > 0)
+    machined = {face.number for face in targets}
+    every = [own for face in plan.part.faces for own in own_pieces(face)]
+    others = [own for own in every if own.number not in machined]
+    with_allowance = [(own, plan.inputs.allowance_of(own)) for own in others]
+    return tuple((own, left) for own, left in with_allowance if left > 0)
 
 
 def _end_of(op: Operation | None, tool: Tool) -> tuple[Array, Array, tuple[float, ...]] | None:
     """Where an operation ends: tip, axis and rotary angles; None where its axis moves, at the start, and before another
     tool."""
-    if op is None or op.path is None or not op.rotary or op.orientation.lead is not None or op.tool != tool:
+    if op is None or op.path is None or op.tool != tool:
+        return None
+    axis_moves = op.orientation.lead is not None
+    if axis_moves or not op.rotary:
         return None
     return op.path.cl[-1], op.path.axis[-1], op.rotary
 
@@ -244,15 +307,28 @@ def verdict_document(plan: Plan, verdict: Verdict) -> dict[str, Any]:
     plan : Plan
     verdict : Verdict
     """
-    missing = [op.name for op in plan.operations if op.path is None and outcome_of([op], plan.blades) != "complete"]
-    return {"schema": "toolaxis.verdict", "version": 1, "passed": passes(plan, verdict),
-            "made_passed": has_passes(plan, verdict),
-            "complete": not verdict.unjudged, "unjudged": list(verdict.unjudged),
-            "reasons": [*verdict.reasons, *(f"{name}: no axis, nothing to judge" for name in missing),
-                        *(f"between operations: {why}" for why in plan.in_the_way),
-                        *(f"the plan: {why.sentence}" for why in plan.faults)],
-            "not_checked": list(not_judged(plan, verdict)), "part": _account(plan, verdict),
-            "operations": [_operation_document(op) for op in verdict.operations]}
+    return {
+        "schema": "toolaxis.verdict",
+        "version": 1,
+        "passed": passes(plan, verdict),
+        "made_passed": has_passes(plan, verdict),
+        "complete": not verdict.unjudged,
+        "unjudged": list(verdict.unjudged),
+        "reasons": _reasons(plan, verdict),
+        "not_checked": list(not_judged(plan, verdict)),
+        "part": _account(plan, verdict),
+        "operations": [_operation_document(op) for op in verdict.operations],
+    }
+
+
+def _reasons(plan: Plan, verdict: Verdict) -> list[str]:
+    """Why a plan does not pass: what the judge found, what has no axis, and what the plan itself tells."""
+    without_path = [op for op in plan.operations if op.path is None]
+    missing = [op.name for op in without_path if outcome_of([op], plan.blades) != "complete"]
+    return [*verdict.reasons,
+            *(f"{name}: no axis, nothing to judge" for name in missing),
+            *(f"between operations: {why}" for why in plan.in_the_way),
+            *(f"the plan: {why.sentence}" for why in plan.faults)]
 
 
 def _account(plan: Plan, verdict: Verdict) -> dict[str, float]:
@@ -261,8 +337,13 @@ def _account(plan: Plan, verdict: Verdict) -> dict[str, float]:
     passed = sum(op.area - op.declared for op in verdict.operations if op.passed)
     verified = min(float(passed), planned.area)
     left = planned.area - verified - planned.unreachable - planned.not_begun
-    return {"area": planned.area, "verified": verified, "unreachable": planned.unreachable, "open": max(left, 0.0),
-            "not_begun": planned.not_begun}
+    return {
+        "area": planned.area,
+        "verified": verified,
+        "unreachable": planned.unreachable,
+        "open": max(left, 0.0),
+        "not_begun": planned.not_begun,
+    }
 
 
 def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:
@@ -274,9 +355,13 @@ def not_judged(plan: Plan, verdict: Verdict) -> tuple[str, ...]:
     verdict : Verdict
     """
     missing = [name for name in plan.not_checked if not name.startswith("collision with the machine")]
-    if plan.machine is not None and not all("machine" in op.clearance for op in verdict.operations):
+    if plan.machine is None:
+        return tuple(missing)
+    on_paths = all("machine" in op.clearance for op in verdict.operations)
+    on_index_moves = all("index move" in op.clearance for op in verdict.operations[1:])
+    if not on_paths:
         missing.append("collision with the machine itself")
-    elif plan.machine is not None and not all("index move" in op.clearance for op in verdict.operations[1:]):
+    elif not on_index_moves:
         missing.append("collision with the machine on index moves")
     return tuple(missing)
 
@@ -308,13 +393,25 @@ def _number(value: float) -> float | None:
 
 
 def _place(place: MapPoint) -> dict[str, Any]:
-    return {"face": place.face, "uv": list(place.uv), "point": list(place.point), "value": _number(place.value),
-            "cl_point": place.motion + 1}
+    return {
+        "face": place.face,
+        "uv": list(place.uv),
+        "point": list(place.point),
+        "value": _number(place.value),
+        "cl_point": place.motion + 1,
+    }
 
 
 def _zone(zone: MapZone) -> dict[str, Any]:
-    return {"face": zone.face, "area": zone.area, "low": list(zone.low), "high": list(zone.high),
-            "largest": _number(zone.largest), "reason": zone.reason, "at_border": zone.at_border}
+    return {
+        "face": zone.face,
+        "area": zone.area,
+        "low": list(zone.low),
+        "high": list(zone.high),
+        "largest": _number(zone.largest),
+        "reason": zone.reason,
+        "at_border": zone.at_border,
+    }
 
 
 def _clearances(found: Mapping[str, Clearance | str]) -> dict[str, Any]:
@@ -322,15 +419,29 @@ def _clearances(found: Mapping[str, Clearance | str]) -> dict[str, Any]:
 
 
 def _operation_document(op: OperationVerdict) -> dict[str, Any]:
-    return {"name": op.name, "faces": list(op.faces), "passed": op.passed, "reasons": list(op.reasons),
-            "scallop_limit": op.scallop_limit, "allowance": op.allowance, "scallop_max": _number(op.scallop_max),
-            "share_within": op.share_within, "declared": op.declared,
-            "gouge_max": op.gouge_max if op.measured else None,
-            "gouge_allowed": op.gouge_allowed, "clearance": _clearances(op.clearance),
-            "worst_scallop": [_place(p) for p in op.worst_scallop],
-            "worst_gouge": [_place(p) for p in op.worst_gouge], "zones": [_zone(z) for z in op.zones],
-            "area": op.area, "rays": op.rays, "spacing": op.spacing, "uncertainty": op.uncertainty,
-            "least_lean": None if op.lean is None else op.lean.angle,
-            "step_over": None if op.step_over is None else op.step_over.distance,
-            "lead_arcs": None if op.leads is None else {"arcs": op.leads.arcs, "ends": op.leads.ends},
-            "stock": op.stock, "clearance_from_stock_faces": _clearances(op.from_stock)}
+    return {
+        "name": op.name,
+        "faces": list(op.faces),
+        "passed": op.passed,
+        "reasons": list(op.reasons),
+        "scallop_limit": op.scallop_limit,
+        "allowance": op.allowance,
+        "scallop_max": _number(op.scallop_max),
+        "share_within": op.share_within,
+        "declared": op.declared,
+        "gouge_max": op.gouge_max if op.measured else None,
+        "gouge_allowed": op.gouge_allowed,
+        "clearance": _clearances(op.clearance),
+        "worst_scallop": [_place(place) for place in op.worst_scallop],
+        "worst_gouge": [_place(place) for place in op.worst_gouge],
+        "zones": [_zone(zone) for zone in op.zones],
+        "area": op.area,
+        "rays": op.rays,
+        "spacing": op.spacing,
+        "uncertainty": op.uncertainty,
+        "least_lean": None if op.lean is None else op.lean.angle,
+        "step_over": None if op.step_over is None else op.step_over.distance,
+        "lead_arcs": None if op.leads is None else {"arcs": op.leads.arcs, "ends": op.leads.ends},
+        "stock": op.stock,
+        "clearance_from_stock_faces": _clearances(op.from_stock),
+    }

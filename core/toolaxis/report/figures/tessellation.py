@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,12 @@ from toolaxis.shape.face import Face
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-#: Samples each way at which the bend of a face is looked at, at least so many between two knots; segments each way at
-#: most.
-_LOOKED, _OF_SPAN, _MOST = 17, 4, 160
+#: Samples each way at which the bend of a face is looked at, and at least so many between two knots.
+_SAMPLES, _SAMPLES_OF_SPAN = 17, 4
+#: Segments each way at most.
+_MOST_SEGMENTS = 160
+#: What chords may take of the bound along one parameter; the middles of cells take the rest.
+_CHORD_SHARE = 0.4
 #: Segments on flat stretches are no longer than by this factor, or triangles become slivers.
 _GRADED = 0.3
 #: How often edges of the outline that are not sides of triangles are halved.
@@ -57,39 +61,69 @@ def triangles(face: Face, bound: float) -> Triangles:
     face may turn a corner within a thirtieth of its length.  What came of it is measured, see `Triangles.off`.  Sides
     follow the thinned outline, but for a few that lie closer together than triangles are wide.
     """
-    lines, scale = _lay_lines(face, bound)
+    grid = _lay_lines(face, bound)
     if face.trims:
-        uv, corners = _triangulate_loops(face, lines, scale, bound)
+        uv, corners = _triangulate_loops(face, grid, bound)
     else:
-        uv, corners = _whole(*lines)
+        uv, corners = _triangulate_grid(grid)
     points = face.evaluate(uv).point
     a, b, c = points[corners.T]
     sizes = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     largest = max(float(sizes.max(initial=0.0)), 1e-300)
     corners = corners[sizes > 1e-9 * largest]
-    return Triangles(points, corners[:, ::-1] if face.flip else corners, _off(face, uv, points, corners))
+    off = _greatest_distance(face, uv, points, corners)
+    seen_from_outside = corners[:, ::-1] if face.flip else corners
+    return Triangles(points, seen_from_outside, off)
 
 
-def _lay_lines(face: Face, bound: float) -> tuple[tuple[Array, Array], Array]:
-    """Lines along u and v between which chords keep within a bound, and lengths of the unit of u and of v, mm."""
+class _GridLines(NamedTuple):
+    """Parameters of the lines along which a face is divided, ascending, and the mean length of the unit of u and v."""
+
+    u: Array
+    v: Array
+    scale: Array
+
+    @property
+    def points(self) -> Array:
+        """Where the lines cross, (n, 2) in (u, v)."""
+        return grid_rows(self.u, self.v)
+
+    @property
+    def steps(self) -> Array:
+        """The least distance of neighbouring lines in u and in v."""
+        return np.array([np.diff(self.u).min(), np.diff(self.v).min()])
+
+
+def _lay_lines(face: Face, bound: float) -> _GridLines:
+    """Lines along u and v between which chords keep within a bound, mm."""
     u0, u1, v0, v1 = face.bounds
-    spans = _spans(face.surface.knots_u, u0, u1), _spans(face.surface.knots_v, v0, v1)
-    u, v = (_sample_spans(ends) for ends in spans)
+    spans_u = _spans(face.surface.knots_u, u0, u1)
+    spans_v = _spans(face.surface.knots_v, v0, v1)
+    u = _sample_spans(spans_u)
+    v = _sample_spans(spans_v)
     d = face.evaluate(grid_rows(u, v))
-    bends = [np.linalg.norm(row, axis=1).reshape(len(u), len(v)) for row in (d.suu, d.svv)]
-    counts = (_count_lines(spans[0], u, bends[0].max(axis=1), bound),
-              _count_lines(spans[1], v, bends[1].max(axis=0), bound))
+    bends_u = _lengths(d.suu).reshape(len(u), len(v))
+    bends_v = _lengths(d.svv).reshape(len(u), len(v))
+    counts_u = _count_lines(spans_u, u, bends_u.max(axis=1), bound)
+    counts_v = _count_lines(spans_v, v, bends_v.max(axis=0), bound)
     # A cell's middle is off by a quarter of its twist.
-    twist = float(np.linalg.norm(d.suv, axis=1).max()) * (u1 - u0) * (v1 - v0)
-    finer = max(1.0, np.sqrt(twist / (4 * 0.4 * bound * counts[0][-1] * counts[1][-1])))
-    lengths = np.array([float(np.linalg.norm(row, axis=1).mean()) for row in (d.su, d.sv)])
-    lines = _place_lines(spans[0], finer * counts[0]), _place_lines(spans[1], finer * counts[1])
-    return lines, np.maximum(lengths, 1e-12)
+    twist = float(_lengths(d.suv).max()) * (u1 - u0) * (v1 - v0)
+    finer = max(1.0, np.sqrt(twist / (4 * _CHORD_SHARE * bound * counts_u[-1] * counts_v[-1])))
+    units = np.array([float(_lengths(d.su).mean()), float(_lengths(d.sv).mean())])
+    lines_u = _place_lines(spans_u, finer * counts_u)
+    lines_v = _place_lines(spans_v, finer * counts_v)
+    return _GridLines(lines_u, lines_v, np.maximum(units, 1e-12))
+
+
+def _lengths(vectors: Array) -> Array:
+    """Lengths of the rows, (n,)."""
+    return np.asarray(np.linalg.norm(vectors, axis=1))
 
 
 def _spans(knots: Array, low: float, high: float) -> Array:
     """Ends of the spans between knots in a range, none shorter than a face's lines may lie apart."""
-    least, ends = (high - low) / _MOST, [low]
+    least = (high - low) / _MOST_SEGMENTS
+    ends = [low]
     for knot in knots:
         if knot >= ends[-1] + least and knot <= high - least:
             ends.append(float(knot))
@@ -97,37 +131,45 @@ def _spans(knots: Array, low: float, high: float) -> Array:
 
 
 def _sample_spans(ends: Array) -> Array:
-    """Places in all spans, their ends among them."""
-    count = max(_OF_SPAN, _LOOKED // (len(ends) - 1))
-    return np.concatenate([*(np.linspace(low, high, count, endpoint=False) for low, high in pairwise(ends)), ends[-1:]])
+    """Parameters in all spans, their ends among them."""
+    count = max(_SAMPLES_OF_SPAN, _SAMPLES // (len(ends) - 1))
+    within = [np.linspace(low, high, count, endpoint=False) for low, high in pairwise(ends)]
+    return np.concatenate([*within, ends[-1:]])
 
 
-def _count_lines(ends: Array, places: Array, bends: Array, bound: float) -> Array:
-    """How many segments, no whole numbers, lie before the end of each span, for the greatest bends at places in them.
+def _count_lines(ends: Array, parameters: Array, bends: Array, bound: float) -> Array:
+    """How many segments, no whole numbers, lie before the end of each span, for the bends at parameters in them.
 
     A chord is off by an eighth of the bend over it: a share of the bound.
     """
-    within = [bends[(places >= low) & (places <= high)].max() for low, high in pairwise(ends)]
-    density = np.sqrt(np.array(within) / (8 * 0.4 * bound))
-    density = np.maximum(density, max(_GRADED * float(density.max()), 2.0 / (ends[-1] - ends[0])))
-    return np.concatenate([[0.0], np.cumsum(density * np.diff(ends))])
+    greatest = []
+    for low, high in pairwise(ends):
+        is_within = (parameters >= low) & (parameters <= high)
+        greatest.append(bends[is_within].max())
+    density = np.sqrt(np.array(greatest) / (8 * _CHORD_SHARE * bound))
+    least = max(_GRADED * float(density.max()), 2.0 / (ends[-1] - ends[0]))
+    counts = np.maximum(density, least) * np.diff(ends)
+    return np.concatenate([[0.0], np.cumsum(counts)])
 
 
 def _place_lines(ends: Array, counts: Array) -> Array:
     """Lines with as many segments in each span as are counted there."""
-    whole = int(min(np.ceil(counts[-1] - 1e-9), _MOST))
-    return np.interp(np.linspace(0.0, counts[-1], whole + 1), counts, ends)
+    total = counts[-1]
+    whole = int(min(np.ceil(total - 1e-9), _MOST_SEGMENTS))
+    return np.interp(np.linspace(0.0, total, whole + 1), counts, ends)
 
 
-def _whole(u: Array, v: Array) -> tuple[Array, Index]:
+def _triangulate_grid(grid: _GridLines) -> tuple[Array, Index]:
     """Points and triangles of a whole grid."""
-    i, j = (index.ravel() for index in np.indices((len(u) - 1, len(v) - 1)))
-    a = i * len(v) + j
-    b = a + len(v)
+    across = len(grid.v)
+    i, j = (index.ravel() for index in np.indices((len(grid.u) - 1, across - 1)))
+    a = i * across + j
+    b = a + across
     c = b + 1
     d = a + 1
-    halves = [np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]
-    return grid_rows(u, v), np.concatenate(halves)
+    first_halves = np.stack([a, b, c], axis=1)
+    second_halves = np.stack([a, c, d], axis=1)
+    return grid.points, np.concatenate([first_halves, second_halves])
 
 
 def outline_loops(face: Face, bound: float) -> list[Array]:
@@ -138,63 +180,97 @@ def outline_loops(face: Face, bound: float) -> list[Array]:
     face : Face
     bound : float
     """
-    lines, scale = _lay_lines(face, bound)
-    step = float(np.diff(lines[0]).min()), float(np.diff(lines[1]).min())
+    grid = _lay_lines(face, bound)
+    step_u, step_v = map(float, grid.steps)
     loops = []
     for loop in face.outline:
-        dense = walk(loop, stations(loop, step))
+        dense = walk(loop, stations(loop, (step_u, step_v)))
         # In space and in the parameters too: the two sides of a seam are one line in space.
-        both = np.hstack([face.evaluate(dense).point, dense * scale])
+        both = np.hstack([face.evaluate(dense).point, dense * grid.scale])
         loops.append(dense[simplify_loop(both, bound)])
     return loops
 
 
-def _triangulate_loops(face: Face, grid: tuple[Array, Array], scale: Array, bound: float) -> tuple[Array, Index]:
-    """Points and triangles of a face with loops: a Delaunay triangulation that has the outline's edges."""
-    from scipy.spatial import Delaunay, QhullError
+def _triangulate_loops(face: Face, grid: _GridLines, bound: float) -> tuple[Array, Index]:
+    """Points and triangles of a face with loops: a Delaunay triangulation that has the outline's edges.
 
-    loops = [loop * scale for loop in outline_loops(face, 0.5 * bound)]
-    inner = grid_rows(*grid) * scale
-    step = np.array([np.diff(line).min() for line in grid]) * scale
-    inner = inner[inside(slabs(tuple(loops)), inner)]
+    It is made in the plane of the parameters, in units of about a mm.
+    """
+    loops = [loop * grid.scale for loop in outline_loops(face, 0.5 * bound)]
+    crossings = grid.points * grid.scale
+    inner = crossings[inside(slabs(tuple(loops)), crossings)]
+    least = 0.25 * float((grid.steps * grid.scale).min())
     origin = np.concatenate(loops).min(axis=0)
     for attempt in range(_ROUNDS + 1):
         border = np.concatenate(loops)
-        apart = _away(inner, loops, 0.25 * float(step.min()))
-        points = np.concatenate([border, inner[apart]])
-        try:
-            corners = Delaunay(points - origin).simplices.astype(np.int64)
-        except QhullError:  # a sliver in which all points lie on one line
-            return border / scale, np.empty((0, 3), dtype=np.int64)
+        points = np.concatenate([border, inner[_is_away(inner, loops, least)]])
+        corners = _triangulate_points(points - origin)
+        if not len(corners):
+            return border / grid.scale, corners
         if attempt == _ROUNDS:
             break
-        firsts = np.cumsum([0, *map(len, loops)])[:-1]
-        halved = [_halve_edges(loop, corners, first) for loop, first in zip(loops, firsts, strict=True)]
-        if all(len(new) == len(old) for new, old in zip(halved, loops, strict=True)):
+        halved = _halve_missing_edges(loops, corners)
+        if sum(map(len, halved)) == len(border):
             break
         loops = halved
-    kept = inside(slabs(tuple(loops)), points[corners].mean(axis=1))
-    corners = corners[kept]
+    is_inside = inside(slabs(tuple(loops)), points[corners].mean(axis=1))
+    return points / grid.scale, _turn_anticlockwise(points, corners[is_inside])
+
+
+def _triangulate_points(points: Array) -> Index:
+    """Corners of the Delaunay triangles of points in the plane; none where all lie on one line, as in a sliver."""
+    from scipy.spatial import Delaunay, QhullError
+
+    try:
+        return np.asarray(Delaunay(points).simplices.astype(np.int64))
+    except QhullError:
+        return np.empty((0, 3), dtype=np.int64)
+
+
+def _turn_anticlockwise(points: Array, corners: Index) -> Index:
+    """Triangles in the plane that run anticlockwise, without those that have no width.
+
+    Points along a straight side of the outline make such triangles, which a bent face makes wide in space.
+    """
     a, b, c = points[corners.T]
     bx, by = (b - a).T
     cx, cy = (c - a).T
-    twice = bx * cy - by * cx
-    corners[twice < 0] = corners[twice < 0][:, ::-1]
-    # Points along a straight side of the outline make triangles without width, which a bent face makes wide in space.
-    wide = np.abs(twice) > 1e-9 * np.abs(twice).max(initial=0.0)
-    return points / scale, corners[wide]
+    twice_area = bx * cy - by * cx
+    runs_clockwise = twice_area < 0
+    corners[runs_clockwise] = corners[runs_clockwise][:, ::-1]
+    size = np.abs(twice_area)
+    is_wide = size > 1e-9 * size.max(initial=0.0)
+    return corners[is_wide]
 
 
-def _away(points: Array, loops: list[Array], least: float) -> NDArray[np.bool_]:
+def _is_away(points: Array, loops: list[Array], least: float) -> NDArray[np.bool_]:
     """Which points keep about a distance from loops: one on a border makes a triangle without width along it."""
     from scipy.spatial import cKDTree
 
-    dense = np.concatenate([walk(loop, stations(loop, (0.5 * least, 0.5 * least))) for loop in loops])
-    return np.asarray(cKDTree(dense).query(points)[0] > least)
+    step = 0.5 * least
+    dense = [walk(loop, stations(loop, (step, step))) for loop in loops]
+    distances = cKDTree(np.concatenate(dense)).query(points)[0]
+    return np.asarray(distances > least)
+
+
+def _halve_missing_edges(loops: list[Array], corners: Index) -> list[Array]:
+    """Loops with a vertex in the middle of each edge that is no side of a triangle.
+
+    The first points of the triangulation are the vertices of the loops, in their order.
+    """
+    halved = []
+    first = 0
+    for loop in loops:
+        halved.append(_halve_edges(loop, corners, first))
+        first += len(loop)
+    return halved
 
 
 def _halve_edges(loop: Array, corners: Index, first: int) -> Array:
-    """A loop with a vertex in the middle of each edge that is no side of a triangle."""
+    """A loop with a vertex in the middle of each edge that is no side of a triangle.
+
+    first : number of its first vertex among the points of the triangulation
+    """
     most = int(corners.max()) + 1
 
     def number(ends: Index) -> Index:
@@ -204,20 +280,25 @@ def _halve_edges(loop: Array, corners: Index, first: int) -> Array:
 
     vertex = first + np.arange(len(loop))
     edges = np.stack([vertex, np.roll(vertex, -1)], axis=1)
-    sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    missing = ~np.isin(number(edges), number(sides))
-    middle = 0.5 * (loop + np.roll(loop, -1, axis=0))
-    return np.insert(loop, np.flatnonzero(missing) + 1, middle[missing], axis=0)
+    is_missing = ~np.isin(number(edges), number(np.concatenate(_sides(corners))))
+    middles = 0.5 * (loop + np.roll(loop, -1, axis=0))
+    after = np.flatnonzero(is_missing) + 1
+    return np.insert(loop, after, middles[is_missing], axis=0)
 
 
-def _off(face: Face, uv: Array, points: Array, corners: Index) -> float:
+def _sides(corners: Index) -> list[Index]:
+    """The ends of the first, second and third side of triangles, (m, 2) each."""
+    return [corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]
+
+
+def _greatest_distance(face: Face, uv: Array, points: Array, corners: Index) -> float:
     """How far the middles of triangles and sides are from the surface, mm: along the normal at the same parameters."""
     if not len(corners):
         return 0.0
     worst = 0.0
-    for rows in (corners, corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]):
-        at = uv[rows].mean(axis=1)
-        apart = face.evaluate(at).point - points[rows].mean(axis=1)
-        off = (apart * face.normal(at)).sum(axis=1)
-        worst = max(worst, float(np.abs(off).max()))
+    for rows in (corners, *_sides(corners)):
+        middle_uv = uv[rows].mean(axis=1)
+        to_surface = face.evaluate(middle_uv).point - points[rows].mean(axis=1)
+        along_normal = (to_surface * face.normal(middle_uv)).sum(axis=1)
+        worst = max(worst, float(np.abs(along_normal).max()))
     return worst
