@@ -15,7 +15,7 @@ Document = Mapping[str, Any]
 _KINDS = (("memory", r"MemoryError|out of memory|Unable to allocate"),
           ("exception", r"^failed\b"),
           ("not found in limit", r"within the limit|limit of work|work limit"),
-          ("left to clean-up", r"left to clean-up"),
+          ("rest material", r"left (as|entirely as) rest material|left to clean-up"),
           ("normals spread", r"the normals of face|its normals spread|limits and normals leave no axis|"
                              r"more than a hemisphere"))
 #: The same by the constraint that an axis breaks, where nothing else is known.
@@ -140,7 +140,7 @@ def _verified(op: Document, verdicts: Mapping[str, Document], areas: Mapping[int
 
 
 def _of_operations(some: Sequence[Document], verdicts: Mapping[str, Document], judged: Ran | None) -> dict[str, Any]:
-    """The outcome of a face that has operations: the worst of theirs; a piece left to clean-up spoils no other."""
+    """The outcome of a face that has operations: the worst of theirs; a piece left as rest material spoils no other."""
     done = [op for op in some if op["cl_file"]]
     reasons = [why for op in some for why in op["orientation"]["reasons"]]
     failed = [op for op in done if op["name"] in verdicts and not verdicts[op["name"]]["passed"]]
@@ -156,7 +156,7 @@ def _of_operations(some: Sequence[Document], verdicts: Mapping[str, Document], j
     elif missing:
         outcome, kind = "open", kind_of([why for op in missing for why in op["orientation"]["reasons"]])
     elif not done:
-        outcome, kind = "left", "left to clean-up"
+        outcome, kind = "left", "rest material"
     else:
         outcome, kind = "verified", ""
     return {"outcome": outcome, "kind": kind, "reasons": reasons, "judge_reasons": told,

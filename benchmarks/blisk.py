@@ -33,7 +33,7 @@ SCALLOP, WORKERS = 0.02, 2
 JOBS = ((ROOT / "examples" / "blisk.step", ta.Tool.parse("torus:10x1", **SLENDER)),
         (SHARED / "kj66_impeller.step", load_tool("tapered-2x1x3")))
 STAGES = (("looking for blades", "blades found"), ("looking for what", "covered faces"),
-          ("axes at the lattice", "division"), ("(1 of", "search and proof"), ("clean-up zones", "clean-up zones"),
+          ("axes at the lattice", "division"), ("(1 of", "search and proof"), ("rest material", "rest material"),
           ("blade ", "turned and proven"), ("clearance to", "clearances"))
 COUNTS = (1, 2, 4, 8, 16)
 

@@ -103,7 +103,7 @@ def judged(plan: Plan, published: list[int]) -> None:
     whole = plan.part.face(plan.operations[0].face.number).area
     left = sum(zone.area for op in plan.operations for zone in op.zones)
     also = sum(zone.elsewhere for op in plan.operations for zone in op.zones)
-    print(f"    together {plan.length:.1f} mm, {left:.1f} of {whole:.1f} mm2 left to clean-up, {also:.1f} of that "
+    print(f"    together {plan.length:.1f} mm, {left:.1f} of {whole:.1f} mm2 rest material, {also:.1f} of that "
           f"machined by other sub-surfaces; sub-surfaces and the face differ by {abs(areas / whole - 1):.1e}")
 
 

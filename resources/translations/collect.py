@@ -26,6 +26,8 @@ def texts():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and _name(node.func) in _MARKS and len(node.args) >= 2:
                 found |= {(context, text) for context in _literals(node.args[0]) for text in _literals(node.args[1])}
+            elif isinstance(node, ast.Call) and _name(node.func) == "Property" and len(node.args) >= 4:
+                found |= {("App::Property", text) for text in _literals(node.args[3]) if not _is_hidden(node)}
     for path in LAYOUTS.glob("*.ui"):
         root = ElementTree.parse(path).getroot()
         context = root.findtext("class")
@@ -40,6 +42,12 @@ def texts():
 
 def _name(function):
     return getattr(function, "attr", None) or getattr(function, "id", None)
+
+
+def _is_hidden(call):
+    """Whether the property that a call describes is one that FreeCAD's editor does not show."""
+    given = call.args[5:6] + [one.value for one in call.keywords if one.arg == "hidden"]
+    return any(getattr(value, "value", None) is True for value in given)
 
 
 def _literals(node):

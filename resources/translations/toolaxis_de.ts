@@ -2,6 +2,417 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de" sourcelanguage="en">
  <context>
+  <name>App::Property</name>
+  <message>
+   <source>Allowances of single faces: 3,5-8=0.3;9=0.1</source>
+   <translation>Aufmaße einzelner Flächen: 3,5-8=0.3;9=0.1</translation>
+  </message>
+  <message>
+   <source>Allowed gouge</source>
+   <translation>Erlaubte Konturverletzung</translation>
+  </message>
+  <message>
+   <source>Allowed gouge of the finished face; double-click the operation to change it</source>
+   <translation>Erlaubte Konturverletzung der fertigen Fläche; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Also plan the same faces by other methods</source>
+   <translation>Dieselben Flächen auch mit anderen Verfahren planen</translation>
+  </message>
+  <message>
+   <source>Area divided by cutting length</source>
+   <translation>Fläche geteilt durch Schnittlänge</translation>
+  </message>
+  <message>
+   <source>Area not begun when the plan was stopped</source>
+   <translation>Fläche, die beim Stopp der Planung nicht begonnen war</translation>
+  </message>
+  <message>
+   <source>Area of the faces, if planned with several tools</source>
+   <translation>Inhalt der Flächen, wenn mit mehreren Werkzeugen geplant wurde</translation>
+  </message>
+  <message>
+   <source>Area proven to be out of reach of every tool</source>
+   <translation>Fläche, die nachweislich für jedes Werkzeug unerreichbar ist</translation>
+  </message>
+  <message>
+   <source>Area that is machined</source>
+   <translation>Bearbeitete Fläche</translation>
+  </message>
+  <message>
+   <source>Area that was tried and stays open</source>
+   <translation>Fläche, die versucht wurde und offen bleibt</translation>
+  </message>
+  <message>
+   <source>Bodies to avoid</source>
+   <translation>Zu meidende Körper</translation>
+  </message>
+  <message>
+   <source>Changes that put the results out of date</source>
+   <translation>Änderungen, durch die die Ergebnisse veraltet sind</translation>
+  </message>
+  <message>
+   <source>Clamped side of the part: z&lt;12.5</source>
+   <translation>Gespannte Seite des Teils: z&lt;12.5</translation>
+  </message>
+  <message>
+   <source>Cutter: torus:12x1, ball:8, flat:20 or tapered:6x3x4</source>
+   <translation>Fräser: torus:12x1, ball:8, flat:20 oder tapered:6x3x4</translation>
+  </message>
+  <message>
+   <source>Data that are assumed</source>
+   <translation>Angenommene Daten</translation>
+  </message>
+  <message>
+   <source>Direction of the passes</source>
+   <translation>Richtung der Bahnen</translation>
+  </message>
+  <message>
+   <source>Faces of the part that no tool may touch: 3,5-8</source>
+   <translation>Flächen des Teils, die kein Werkzeug berühren darf: 3,5-8</translation>
+  </message>
+  <message>
+   <source>Feed rate of the cutting moves</source>
+   <translation>Vorschub der Schnittbewegungen</translation>
+  </message>
+  <message>
+   <source>Fixed axes, or how the axis moves while cutting</source>
+   <translation>Feste Achsen, oder wie sich die Achse beim Schneiden bewegt</translation>
+  </message>
+  <message>
+   <source>Its axes with their ranges</source>
+   <translation>Ihre Achsen mit ihren Bereichen</translation>
+  </message>
+  <message>
+   <source>Length from the tip to the holder's lower face</source>
+   <translation>Länge von der Spitze bis zur Unterseite des Halters</translation>
+  </message>
+  <message>
+   <source>Length of a line</source>
+   <translation>Länge einer Linie</translation>
+  </message>
+  <message>
+   <source>Length of lead-ins, lead-outs and links</source>
+   <translation>Länge von An- und Abfahrbewegungen und Verbindungen</translation>
+  </message>
+  <message>
+   <source>Length of the cutting edge from the tip; 0: two diameters</source>
+   <translation>Länge der Schneide von der Spitze an; 0: zwei Durchmesser</translation>
+  </message>
+  <message>
+   <source>Length of the cutting moves</source>
+   <translation>Länge der Schnittbewegungen</translation>
+  </message>
+  <message>
+   <source>Length of the cutting moves of all operations</source>
+   <translation>Länge der Schnittbewegungen aller Operationen</translation>
+  </message>
+  <message>
+   <source>Limits of the tool axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D</source>
+   <translation>Grenzen der Werkzeugachse: cone:X,Y,Z,GRAD oder rotary:tilt=A..B,turn=C..D</translation>
+  </message>
+  <message>
+   <source>Lower bound of the distance from the cutter to everything but the machined faces</source>
+   <translation>Untergrenze des Abstands des Fräsers zu allem außer den bearbeiteten Flächen</translation>
+  </message>
+  <message>
+   <source>Lower bound of the distance from the holder to everything but the machined faces</source>
+   <translation>Untergrenze des Abstands des Halters zu allem außer den bearbeiteten Flächen</translation>
+  </message>
+  <message>
+   <source>Lower bound of the distance from the shank to everything but the machined faces</source>
+   <translation>Untergrenze des Abstands des Schafts zu allem außer den bearbeiteten Flächen</translation>
+  </message>
+  <message>
+   <source>Lower bounds of clearances, proven on this blade</source>
+   <translation>Untergrenzen der Abstände, auf dieser Schaufel nachgewiesen</translation>
+  </message>
+  <message>
+   <source>Margins of the stock: 2, or 1,1,1,1,0,2 for -X, +X, -Y, +Y, -Z, +Z; nothing: as the CAM job makes it</source>
+   <translation>Zugaben des Rohteils: 2, oder 1,1,1,1,0,2 für -X, +X, -Y, +Y, -Z, +Z; nichts: wie der CAM-Auftrag es anlegt</translation>
+  </message>
+  <message>
+   <source>Material left by roughing; double-click the operation to change it</source>
+   <translation>Material, das vom Schruppen steht; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Material to leave on the face; double-click the operation to change it</source>
+   <translation>Material, das auf der Fläche stehen bleiben soll; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Maximum Ra across the feed, micrometres, for strategies that use it</source>
+   <translation>Größter Ra quer zum Vorschub, Mikrometer, für Strategien, die ihn verwenden</translation>
+  </message>
+  <message>
+   <source>Maximum gouge</source>
+   <translation>Größte Konturverletzung</translation>
+  </message>
+  <message>
+   <source>Maximum number of orientations: a number, auto, or nothing for one each</source>
+   <translation>Größte Zahl der Orientierungen: eine Zahl, auto, oder nichts für je eine</translation>
+  </message>
+  <message>
+   <source>Maximum number of tools from the rack; 0: any number</source>
+   <translation>Größte Zahl der Werkzeuge des Magazins; 0: beliebig viele</translation>
+  </message>
+  <message>
+   <source>Maximum scallop height where the cutter came</source>
+   <translation>Größte Rillenhöhe, wo der Fräser hinkam</translation>
+  </message>
+  <message>
+   <source>Maximum scallop height; double-click the operation to change it</source>
+   <translation>Größte Rillenhöhe; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Maximum step-over, 0: no limit; double-click the operation to change it</source>
+   <translation>Größter Bahnabstand, 0: keine Grenze; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Method by which tool axes are found</source>
+   <translation>Verfahren, nach dem die Werkzeugachsen gefunden werden</translation>
+  </message>
+  <message>
+   <source>Minimum lean of ball ends from the normal</source>
+   <translation>Kleinster Anstellwinkel von Kugelfräsern zur Normalen</translation>
+  </message>
+  <message>
+   <source>Name in the library, or file</source>
+   <translation>Name in der Bibliothek, oder Datei</translation>
+  </message>
+  <message>
+   <source>Name of the tool in the shop</source>
+   <translation>Name des Werkzeugs in der Werkstatt</translation>
+  </message>
+  <message>
+   <source>Not checked for collisions, because it was not given</source>
+   <translation>Nicht auf Kollision geprüft, weil es nicht angegeben war</translation>
+  </message>
+  <message>
+   <source>Number of orientations</source>
+   <translation>Zahl der Orientierungen</translation>
+  </message>
+  <message>
+   <source>Number of passes</source>
+   <translation>Zahl der Bahnen</translation>
+  </message>
+  <message>
+   <source>Number of sub-surfaces</source>
+   <translation>Zahl der Teilflächen</translation>
+  </message>
+  <message>
+   <source>Number of the blade</source>
+   <translation>Nummer der Schaufel</translation>
+  </message>
+  <message>
+   <source>One line for this many points of the cutting moves</source>
+   <translation>Eine Linie für so viele Punkte der Schnittbewegungen</translation>
+  </message>
+  <message>
+   <source>Origin of the work coordinates: stock:top, part:top-front-left or point:X,Y,Z; nothing: that of the part</source>
+   <translation>Nullpunkt der Werkstückkoordinaten: stock:top, part:top-front-left oder point:X,Y,Z; nichts: Ursprung des Teils</translation>
+  </message>
+  <message>
+   <source>Other jobs that have the same work offset</source>
+   <translation>Andere Aufträge mit derselben Nullpunktverschiebung</translation>
+  </message>
+  <message>
+   <source>Out of date: the part or the inputs have changed since; recompute the operation</source>
+   <translation>Veraltet: Das Teil oder die Eingaben haben sich seither geändert; die Operation neu berechnen</translation>
+  </message>
+  <message>
+   <source>Out of date: the part or the inputs have changed since; recompute the plan</source>
+   <translation>Veraltet: Das Teil oder die Eingaben haben sich seither geändert; den Plan neu berechnen</translation>
+  </message>
+  <message>
+   <source>Outcome: complete, incomplete or cancelled</source>
+   <translation>Ergebnis: complete (vollständig), incomplete (unvollständig) oder cancelled (abgebrochen)</translation>
+  </message>
+  <message>
+   <source>Outcome: optimal, feasible, infeasible, not_found or cancelled</source>
+   <translation>Ergebnis: optimal, feasible (machbar), infeasible (unmöglich), not_found (nicht gefunden) oder cancelled (abgebrochen)</translation>
+  </message>
+  <message>
+   <source>Parameter that varies along the passes, u or v</source>
+   <translation>Parameter, der sich entlang der Bahnen ändert, u oder v</translation>
+  </message>
+  <message>
+   <source>Passes along parameters of the face, in parallel planes, or following the scallop height</source>
+   <translation>Bahnen entlang der Parameter der Fläche, in parallelen Ebenen oder der Rillenhöhe folgend</translation>
+  </message>
+  <message>
+   <source>Place of the tool in the magazine; 0: none</source>
+   <translation>Platz des Werkzeugs im Magazin; 0: keiner</translation>
+  </message>
+  <message>
+   <source>Plan one blade of a part with blades and copy it to the others</source>
+   <translation>Eine Schaufel eines Teils mit Schaufeln planen und auf die anderen übertragen</translation>
+  </message>
+  <message>
+   <source>Points with the deepest gouges, in the frame of the plane</source>
+   <translation>Stellen mit den tiefsten Konturverletzungen, im Koordinatensystem der Ebene</translation>
+  </message>
+  <message>
+   <source>Points with the highest scallops, in the frame of the plane</source>
+   <translation>Stellen mit den höchsten Rillen, im Koordinatensystem der Ebene</translation>
+  </message>
+  <message>
+   <source>Position along the passes, 0 to 1</source>
+   <translation>Position entlang der Bahnen, 0 bis 1</translation>
+  </message>
+  <message>
+   <source>Position of the document's origin on the table, all axes at zero</source>
+   <translation>Lage des Ursprungs des Dokuments auf dem Tisch, alle Achsen auf null</translation>
+  </message>
+  <message>
+   <source>Positions of the rotary axes in both solutions, the one used first</source>
+   <translation>Stellungen der Drehachsen in beiden Lösungen, die verwendete zuerst</translation>
+  </message>
+  <message>
+   <source>Quantity shown by the colours</source>
+   <translation>Größe, die die Farben zeigen</translation>
+  </message>
+  <message>
+   <source>Quantity that the choice of the tool axis minimises</source>
+   <translation>Größe, nach deren kleinstem Wert die Werkzeugachse gewählt wird</translation>
+  </message>
+  <message>
+   <source>Radius of lead-in and lead-out arcs, 0: straight ramps; double-click the operation to change it</source>
+   <translation>Radius der Bögen zum An- und Abfahren, 0: gerade Rampen; zum Ändern die Operation doppelt anklicken</translation>
+  </message>
+  <message>
+   <source>Reasons that limit the choice of the axis, or why there is none</source>
+   <translation>Gründe, die die Wahl der Achse begrenzen, oder warum es keine gibt</translation>
+  </message>
+  <message>
+   <source>Result of Verify: not verified, passed, failed, or out of date</source>
+   <translation>Ergebnis der Prüfung: not verified (nicht geprüft), passed (bestanden), failed (nicht bestanden) oder out of date (veraltet)</translation>
+  </message>
+  <message>
+   <source>Rotation about the wheel's axis, in the part's own frame</source>
+   <translation>Drehung um die Achse des Rads, im Koordinatensystem des Teils</translation>
+  </message>
+  <message>
+   <source>Share of the area left as rest material</source>
+   <translation>Anteil der Fläche, der als Restmaterial stehen bleibt</translation>
+  </message>
+  <message>
+   <source>Share of the area within 1.02 times the scallop height, rest material excluded</source>
+   <translation>Anteil der Fläche innerhalb der 1,02-fachen Rillenhöhe, ohne Restmaterial</translation>
+  </message>
+  <message>
+   <source>Source of its data</source>
+   <translation>Herkunft ihrer Daten</translation>
+  </message>
+  <message>
+   <source>Spindle speed, rev/min</source>
+   <translation>Drehzahl, U/min</translation>
+  </message>
+  <message>
+   <source>State of part and operation that the passes were made for</source>
+   <translation>Stand von Teil und Operation, für den die Bahnen gemacht wurden</translation>
+  </message>
+  <message>
+   <source>Sub-surfaces of each face: a number, auto, or nothing for whole faces</source>
+   <translation>Teilflächen jeder Fläche: eine Zahl, auto, oder nichts für ganze Flächen</translation>
+  </message>
+  <message>
+   <source>The axis is kept when the operation is computed again</source>
+   <translation>Die Achse bleibt, wenn die Operation neu berechnet wird</translation>
+  </message>
+  <message>
+   <source>The border is kept when the plan is computed again</source>
+   <translation>Die Grenze bleibt, wenn der Plan neu berechnet wird</translation>
+  </message>
+  <message>
+   <source>The colours in words</source>
+   <translation>Die Farben in Worten</translation>
+  </message>
+  <message>
+   <source>The face of this blade</source>
+   <translation>Die Fläche dieser Schaufel</translation>
+  </message>
+  <message>
+   <source>The face that is machined</source>
+   <translation>Die bearbeitete Fläche</translation>
+  </message>
+  <message>
+   <source>The feed direction is kept when the operation is computed again</source>
+   <translation>Die Vorschubrichtung bleibt, wenn die Operation neu berechnet wird</translation>
+  </message>
+  <message>
+   <source>The operation of Tool Axis that the passes are from</source>
+   <translation>Die Operation von Tool Axis, von der die Bahnen stammen</translation>
+  </message>
+  <message>
+   <source>The passes of the tool</source>
+   <translation>Die Bahnen des Werkzeugs</translation>
+  </message>
+  <message>
+   <source>Their depths, mm</source>
+   <translation>Ihre Tiefen, mm</translation>
+  </message>
+  <message>
+   <source>Their heights, mm</source>
+   <translation>Ihre Höhen, mm</translation>
+  </message>
+  <message>
+   <source>This coordinate system in that of the part</source>
+   <translation>Dieses Koordinatensystem in dem des Teils</translation>
+  </message>
+  <message>
+   <source>Time of all operations, index moves included</source>
+   <translation>Zeit aller Operationen mit Schwenkbewegungen</translation>
+  </message>
+  <message>
+   <source>Time of passes and links</source>
+   <translation>Zeit der Bahnen und Verbindungen</translation>
+  </message>
+  <message>
+   <source>Tool axis from tip to spindle, as planned, in document coordinates</source>
+   <translation>Werkzeugachse von der Spitze zur Spindel, wie geplant, in Koordinaten des Dokuments</translation>
+  </message>
+  <message>
+   <source>Tool libraries, folders and tools to choose from; nothing: the tool above</source>
+   <translation>Werkzeugbibliotheken, Ordner und Werkzeuge zur Auswahl; nichts: das Werkzeug oben</translation>
+  </message>
+  <message>
+   <source>Tools with their operations and times</source>
+   <translation>Werkzeuge mit ihren Operationen und Zeiten</translation>
+  </message>
+  <message>
+   <source>Upper bound of the gouge in the machined faces</source>
+   <translation>Obergrenze der Konturverletzung an den bearbeiteten Flächen</translation>
+  </message>
+  <message>
+   <source>Value at the dark end of the colours</source>
+   <translation>Wert am dunklen Ende der Farben</translation>
+  </message>
+  <message>
+   <source>Value at the light end of the colours: the limit</source>
+   <translation>Wert am hellen Ende der Farben: die Grenze</translation>
+  </message>
+  <message>
+   <source>Warnings about the part</source>
+   <translation>Warnungen zum Teil</translation>
+  </message>
+  <message>
+   <source>What it shows</source>
+   <translation>Was es zeigt</translation>
+  </message>
+  <message>
+   <source>Where the axis moves: its mean lean from the normal, or its constant lead</source>
+   <translation>Wo sich die Achse bewegt: ihr mittlerer Anstellwinkel zur Normalen oder ihr fester Voreilwinkel</translation>
+  </message>
+  <message>
+   <source>Whether the axis moves while cutting; Axis is then its mean</source>
+   <translation>Ob sich die Achse beim Schneiden bewegt; Axis ist dann ihr Mittel</translation>
+  </message>
+  <message>
+   <source>Why it failed, and what was not checked</source>
+   <translation>Warum nicht bestanden, und was nicht geprüft wurde</translation>
+  </message>
+ </context>
+ <context>
   <name>QObject</name>
   <message>
    <source>Tool Axis</source>
@@ -15,19 +426,19 @@
    <translation> und {} weitere</translation>
   </message>
   <message>
-   <source>(stale)</source>
-   <translation>(überholt)</translation>
+   <source>(out of date)</source>
+   <translation>(veraltet)</translation>
   </message>
   <message>
    <source>, about {} s left</source>
    <translation>, noch etwa {} s</translation>
   </message>
   <message>
-   <source>, missed by {}</source>
-   <translation>, verfehlt um {}</translation>
+   <source>, short by {}</source>
+   <translation>, es fehlen {}</translation>
   </message>
   <message>
-   <source>A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end; of the faces around a blade one is enough.</source>
+   <source>A ball end goes around a blade in layers while one rotary axis swivels. Needs a ball end; of the faces around a blade one is enough.</source>
    <translation>Ein Kugelfräser läuft in Schichten um eine Schaufel, eine Drehachse schwenkt. Braucht einen Kugelfräser; von den Flächen um eine Schaufel genügt eine.</translation>
   </message>
   <message>
@@ -51,16 +462,12 @@
    <translation>Alle Werkzeugachsen sind erreichbar. OK übernimmt die Maschine in das Dokument.</translation>
   </message>
   <message>
-   <source>Any number of tools</source>
-   <translation>Beliebig viele Werkzeuge</translation>
+   <source>Allow any number of tools</source>
+   <translation>Beliebig viele Werkzeuge zulassen</translation>
   </message>
   <message>
    <source>Area</source>
    <translation>Fläche</translation>
-  </message>
-  <message>
-   <source>Axis that turns</source>
-   <translation>Achse, die dreht</translation>
   </message>
   <message>
    <source>Back</source>
@@ -87,16 +494,20 @@
    <translation>Abbrechen</translation>
   </message>
   <message>
-   <source>Change of tool, and index move to {}</source>
-   <translation>Werkzeugwechsel, und Schwenkbewegung zu {}</translation>
+   <source>Checking all operations</source>
+   <translation>Alle Operationen werden geprüft</translation>
   </message>
   <message>
-   <source>Clean-up {}</source>
-   <translation>Restmaterial {}</translation>
+   <source>Checking for collisions</source>
+   <translation>Kollisionen werden geprüft</translation>
   </message>
   <message>
-   <source>Click a point: the plan is computed again with that many axes.</source>
-   <translation>Ein Klick auf einen Punkt: der Plan wird mit so vielen Achsen neu berechnet.</translation>
+   <source>Choose a folder.</source>
+   <translation>Bitte einen Ordner wählen.</translation>
+  </message>
+  <message>
+   <source>Click a point: the plan is computed again with that many orientations.</source>
+   <translation>Ein Klick auf einen Punkt: der Plan wird mit so vielen Orientierungen neu berechnet.</translation>
   </message>
   <message>
    <source>Click on the map to try an axis.</source>
@@ -107,16 +518,12 @@
    <translation>Kollision: {}; {} mm tief</translation>
   </message>
   <message>
-   <source>Collisions could not be looked for: {}</source>
-   <translation>Nach Kollisionen konnte nicht gesucht werden: {}</translation>
+   <source>Collisions could not be checked: {}</source>
+   <translation>Kollisionen konnten nicht geprüft werden: {}</translation>
   </message>
   <message>
    <source>Collisions: {} ({}).</source>
    <translation>Kollisionen: {} ({}).</translation>
-  </message>
-  <message>
-   <source>Compute again</source>
-   <translation>Neu berechnen</translation>
   </message>
   <message>
    <source>Copy details</source>
@@ -135,16 +542,8 @@
    <translation>Schnittlänge</translation>
   </message>
   <message>
-   <source>Deepest gouge</source>
-   <translation>Tiefste Konturverletzung</translation>
-  </message>
-  <message>
    <source>Diameter</source>
    <translation>Durchmesser</translation>
-  </message>
-  <message>
-   <source>Different axes: {}; sub-surfaces: {}; {}</source>
-   <translation>Verschiedene Achsen: {}; Teilflächen: {}; {}</translation>
   </message>
   <message>
    <source>Divide into sub-surfaces</source>
@@ -191,10 +590,6 @@
    <translation>Schlichten {}</translation>
   </message>
   <message>
-   <source>Fixed axes</source>
-   <translation>Feste Achsen</translation>
-  </message>
-  <message>
    <source>Folder</source>
    <translation>Ordner</translation>
   </message>
@@ -203,24 +598,16 @@
    <translation>Ordner für die Bilder</translation>
   </message>
   <message>
-   <source>FreeCAD has mixed up this panel with one that was closed: open it once more, or start FreeCAD anew</source>
-   <translation>FreeCAD hat dieses Fenster mit einem geschlossenen verwechselt: bitte noch einmal öffnen oder FreeCAD neu starten</translation>
+   <source>FreeCAD has mixed up this panel with one that was closed: open it once more, or restart FreeCAD</source>
+   <translation>FreeCAD hat diesen Aufgabenbereich mit einem geschlossenen verwechselt: bitte noch einmal öffnen oder FreeCAD neu starten</translation>
   </message>
   <message>
    <source>FreeCAD's library {}</source>
    <translation>Bibliothek {} von FreeCAD</translation>
   </message>
   <message>
-   <source>Give a folder.</source>
-   <translation>Bitte einen Ordner angeben.</translation>
-  </message>
-  <message>
    <source>Gouge allowed</source>
    <translation>Erlaubte Konturverletzung</translation>
-  </message>
-  <message>
-   <source>Gouge, at most</source>
-   <translation>Konturverletzung, höchstens</translation>
   </message>
   <message>
    <source>HTML report: needs {}</source>
@@ -231,16 +618,20 @@
    <translation>Höhe</translation>
   </message>
   <message>
-   <source>Highest scallop</source>
-   <translation>Höchste Rille</translation>
-  </message>
-  <message>
    <source>Holder clearance</source>
    <translation>Abstand des Halters</translation>
   </message>
   <message>
+   <source>Index move from {} to {}: {}</source>
+   <translation>Schwenkbewegung von {} nach {}: {}</translation>
+  </message>
+  <message>
    <source>Index move to {}</source>
    <translation>Schwenkbewegung zu {}</translation>
+  </message>
+  <message>
+   <source>Inputs have changed: compute again.</source>
+   <translation>Die Eingaben haben sich geändert: bitte neu berechnen.</translation>
   </message>
   <message>
    <source>Inside tolerance</source>
@@ -263,28 +654,12 @@
    <translation>Größtes auf</translation>
   </message>
   <message>
-   <source>Lean from the normal, mean</source>
-   <translation>Neigung zur Normalen, Mittel</translation>
-  </message>
-  <message>
-   <source>Left to clean-up</source>
-   <translation>Restmaterial</translation>
-  </message>
-  <message>
    <source>Length against the number of orientations</source>
    <translation>Länge über der Anzahl der Orientierungen</translation>
   </message>
   <message>
-   <source>Length and number of axes</source>
-   <translation>Länge und Zahl der Achsen</translation>
-  </message>
-  <message>
-   <source>Looking at all operations</source>
-   <translation>Alle Operationen werden betrachtet</translation>
-  </message>
-  <message>
-   <source>Looking for collisions</source>
-   <translation>Kollisionen werden gesucht</translation>
+   <source>Length and number of orientations</source>
+   <translation>Länge und Zahl der Orientierungen</translation>
   </message>
   <message>
    <source>Machine</source>
@@ -319,12 +694,20 @@
    <translation>Karte der Werkzeugachsen</translation>
   </message>
   <message>
-   <source>Motion of the axes</source>
-   <translation>Bewegung der Achsen</translation>
+   <source>Max. gouge</source>
+   <translation>Max. Konturverletzung</translation>
   </message>
   <message>
-   <source>No axis is free.</source>
-   <translation>Keine Achse ist frei.</translation>
+   <source>Max. scallop height</source>
+   <translation>Max. Rillenhöhe</translation>
+  </message>
+  <message>
+   <source>Mean lean</source>
+   <translation>Mittlerer Anstellwinkel</translation>
+  </message>
+  <message>
+   <source>Motion of the axes</source>
+   <translation>Bewegung der Achsen</translation>
   </message>
   <message>
    <source>No collisions along the passes (checked: {})</source>
@@ -335,20 +718,24 @@
    <translation>Keine Kollisionen gefunden.</translation>
   </message>
   <message>
-   <source>No map was kept of the axes that were looked at: the reasons stand below.</source>
-   <translation>Von den betrachteten Achsen wurde keine Karte behalten: die Gründe stehen darunter.</translation>
+   <source>No map was kept of the axes tested: the reasons are listed below.</source>
+   <translation>Von den geprüften Achsen wurde keine Karte behalten: die Gründe stehen darunter.</translation>
   </message>
   <message>
-   <source>No map: no axis was looked at.</source>
-   <translation>Keine Karte: Es wurde keine Achse betrachtet.</translation>
+   <source>No map: no axis was tested.</source>
+   <translation>Keine Karte: Es wurde keine Achse geprüft.</translation>
   </message>
   <message>
    <source>No map: the axis moves along the passes.</source>
    <translation>Keine Karte: Die Achse bewegt sich entlang der Bahnen.</translation>
   </message>
   <message>
-   <source>No map: this axis was not looked for by itself. It is shared by sub-surfaces, given, or named by the method.</source>
+   <source>No map: this axis was not searched for by itself. It is shared by sub-surfaces, given, or set by the method.</source>
    <translation>Keine Karte: Diese Achse wurde nicht für sich gesucht. Teilflächen haben sie gemeinsam, sie ist vorgegeben oder folgt aus dem Verfahren.</translation>
+  </message>
+  <message>
+   <source>No possible axis.</source>
+   <translation>Keine Achse möglich.</translation>
   </message>
   <message>
    <source>No usable position on this machine: {}</source>
@@ -356,7 +743,7 @@
   </message>
   <message>
    <source>No vertex is selected: select a vertex of the part in the 3D view</source>
-   <translation>Kein Punkt ist ausgewählt: in der 3D-Ansicht einen Punkt des Teils auswählen</translation>
+   <translation>Kein Eckpunkt ist ausgewählt: in der 3D-Ansicht einen Eckpunkt des Teils auswählen</translation>
   </message>
   <message>
    <source>Not checked: {}.</source>
@@ -379,10 +766,6 @@
    <translation>Auf der Maschine</translation>
   </message>
   <message>
-   <source>On the way from {} to {}: {}</source>
-   <translation>Auf dem Weg von {} nach {}: {}</translation>
-  </message>
-  <message>
    <source>On {}</source>
    <translation>Auf {}</translation>
   </message>
@@ -403,8 +786,16 @@
    <translation>Orientierungen</translation>
   </message>
   <message>
+   <source>Orientations: {}; sub-surfaces: {}; {}</source>
+   <translation>Orientierungen: {}; Teilflächen: {}; {}</translation>
+  </message>
+  <message>
    <source>Other methods</source>
    <translation>Andere Verfahren</translation>
+  </message>
+  <message>
+   <source>Out of date: {}. Recompute</source>
+   <translation>Veraltet: {}. Neu berechnen</translation>
   </message>
   <message>
    <source>Outcome</source>
@@ -452,7 +843,7 @@
   </message>
   <message>
    <source>Press Compute to find the axes.</source>
-   <translation>Berechnen findet die Achsen.</translation>
+   <translation>Auf Berechnen drücken, um die Achsen zu suchen.</translation>
   </message>
   <message>
    <source>Raise the part by {}</source>
@@ -467,16 +858,40 @@
    <translation>Die Bahnen werden gelesen</translation>
   </message>
   <message>
+   <source>Recompute</source>
+   <translation>Neu berechnen</translation>
+  </message>
+  <message>
+   <source>Remove axis limits</source>
+   <translation>Grenzen der Achse aufheben</translation>
+  </message>
+  <message>
    <source>Removing material</source>
    <translation>Material wird abgetragen</translation>
   </message>
   <message>
-   <source>Results are up to date; verdict: {}</source>
-   <translation>Die Ergebnisse sind aktuell; Urteil: {}</translation>
+   <source>Rest material</source>
+   <translation>Restmaterial</translation>
+  </message>
+  <message>
+   <source>Rest material {}</source>
+   <translation>Restmaterial {}</translation>
+  </message>
+  <message>
+   <source>Results are up to date; Verify: {}</source>
+   <translation>Die Ergebnisse sind aktuell; Prüfung: {}</translation>
   </message>
   <message>
    <source>Roman's rule</source>
    <translation>Regel von Roman</translation>
+  </message>
+  <message>
+   <source>Rotating axis</source>
+   <translation>Drehende Achse</translation>
+  </message>
+  <message>
+   <source>Rotation about Z</source>
+   <translation>Drehung um Z</translation>
   </message>
   <message>
    <source>Save all...</source>
@@ -488,19 +903,19 @@
   </message>
   <message>
    <source>Scallop limit</source>
-   <translation>Grenze der Rillenhöhe</translation>
+   <translation>Erlaubte Rillenhöhe</translation>
   </message>
   <message>
    <source>Select a vertex of the part in the 3D view and press Use selected on the tab Setup</source>
-   <translation>In der 3D-Ansicht einen Punkt des Teils auswählen und auf der Seite Aufspannung „Auswahl nehmen“ drücken</translation>
+   <translation>In der 3D-Ansicht einen Eckpunkt des Teils auswählen und auf dem Reiter Aufspannung „Auswahl nehmen“ drücken</translation>
   </message>
   <message>
    <source>Select one or more faces in the 3D view and press Add selected</source>
    <translation>Bitte eine oder mehrere Flächen in der 3D-Ansicht auswählen und Auswahl hinzufügen drücken</translation>
   </message>
   <message>
-   <source>Select one sub-surface in the tree, and one line that cuts it if it shall not be cut in the middle.</source>
-   <translation>Bitte eine Teilfläche im Baum auswählen, und eine Linie, die sie zerteilt, wenn es nicht in der Mitte sein soll.</translation>
+   <source>Select one sub-surface in the tree. To split it elsewhere than in the middle, also select a line across it.</source>
+   <translation>Bitte eine Teilfläche im Baum auswählen. Um sie anderswo als in der Mitte zu zerteilen, auch eine Linie quer darüber auswählen.</translation>
   </message>
   <message>
    <source>Select two or more sub-surfaces of one face in the tree first.</source>
@@ -513,14 +928,6 @@
   <message>
    <source>Solution {}</source>
    <translation>Lösung {}</translation>
-  </message>
-  <message>
-   <source>Something has changed: compute again.</source>
-   <translation>Etwas hat sich geändert: bitte neu berechnen.</translation>
-  </message>
-  <message>
-   <source>Stale: {}. Compute again</source>
-   <translation>Überholt: {}. Neu berechnen</translation>
   </message>
   <message>
    <source>Stick-out {}</source>
@@ -575,16 +982,16 @@
    <translation>Teilfläche {}</translation>
   </message>
   <message>
-   <source>The axis leans by one angle from the normal, along the feed.</source>
-   <translation>Die Achse neigt sich um einen Winkel von der Normalen in Vorschubrichtung.</translation>
+   <source>The axis leans by a constant angle from the normal, along the feed.</source>
+   <translation>Die Achse ist um einen festen Winkel gegen die Normale geneigt, in Vorschubrichtung.</translation>
   </message>
   <message>
    <source>The axis moves along the passes: lines in the 3D view show it.</source>
-   <translation>Die Achse bewegt sich längs der Bahnen: Linien in der 3D-Ansicht zeigen sie.</translation>
+   <translation>Die Achse bewegt sich entlang der Bahnen: Linien in der 3D-Ansicht zeigen sie.</translation>
   </message>
   <message>
-   <source>The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose.</source>
-   <translation>Der Fräser berührt die Fläche an zwei Punkten, wo sie hohl ist. Braucht einen Schaft- oder Torusfräser.</translation>
+   <source>The cutter touches the face at two points where it is concave. Needs a flat end mill or bull nose.</source>
+   <translation>Der Fräser berührt die Fläche an zwei Punkten, wo sie konkav ist. Braucht einen Schaft- oder Torusfräser.</translation>
   </message>
   <message>
    <source>The document was not changed. Please report the error with the copied details and, if you can, the part.</source>
@@ -611,12 +1018,12 @@
    <translation>Die Operation wurde gelöscht</translation>
   </message>
   <message>
-   <source>The operations were deleted: there is no axis to hold</source>
-   <translation>Die Operationen wurden gelöscht: es ist keine Achse zu halten</translation>
+   <source>The operations were deleted: there is no tool axis to reach</source>
+   <translation>Die Operationen wurden gelöscht: es ist keine Werkzeugachse zu erreichen</translation>
   </message>
   <message>
-   <source>The operations were deleted: there is nothing to write</source>
-   <translation>Die Operationen wurden gelöscht: es ist nichts zu schreiben</translation>
+   <source>The operations were deleted: there is nothing to export</source>
+   <translation>Die Operationen wurden gelöscht: nichts zu exportieren</translation>
   </message>
   <message>
    <source>The part was deleted: select other faces</source>
@@ -627,16 +1034,16 @@
    <translation>Die Bilder können nicht geschrieben werden: {}</translation>
   </message>
   <message>
+   <source>The result of Verify could not be saved: {}</source>
+   <translation>Das Prüfergebnis konnte nicht gespeichert werden: {}</translation>
+  </message>
+  <message>
    <source>The tool alone: choose a machine with Tool Axis &gt; Machine to see it and its index moves</source>
    <translation>Nur das Werkzeug: mit Tool Axis &gt; Maschine eine Maschine wählen, um sie und ihre Schwenkbewegungen zu sehen</translation>
   </message>
   <message>
-   <source>The verdict could not be kept: {}</source>
-   <translation>Das Urteil konnte nicht aufbewahrt werden: {}</translation>
-  </message>
-  <message>
-   <source>The vertex is not of the part that is machined: select one of {}</source>
-   <translation>Der Punkt gehört nicht zum bearbeiteten Teil: einen von {} auswählen</translation>
+   <source>The vertex does not belong to the part to machine: select one of {}</source>
+   <translation>Der Eckpunkt gehört nicht zum bearbeiteten Teil: einen von {} auswählen</translation>
   </message>
   <message>
    <source>There is no map.</source>
@@ -645,6 +1052,10 @@
   <message>
    <source>There is no planned operation for a machine: select faces and run Plan Orientations first.</source>
    <translation>Es gibt keine geplante Operation für eine Maschine: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+  </message>
+  <message>
+   <source>There is no planned operation to export: select faces and run Plan Orientations first.</source>
+   <translation>Es gibt keine geplante Operation zum Exportieren: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
   </message>
   <message>
    <source>There is no planned operation to make a job of: select faces and run Plan Orientations first.</source>
@@ -656,15 +1067,11 @@
   </message>
   <message>
    <source>There is no planned operation to recompute: select faces and run Plan Orientations first.</source>
-   <translation>Es gibt keine geplante Operation, die neu zu berechnen wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+   <translation>Es gibt keine geplante Operation zum Neuberechnen: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
   </message>
   <message>
    <source>There is no planned operation to verify: select faces and run Plan Orientations first.</source>
-   <translation>Es gibt keine geplante Operation, die zu prüfen wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
-  </message>
-  <message>
-   <source>There is no planned operation to write: select faces and run Plan Orientations first.</source>
-   <translation>Es gibt keine geplante Operation, die zu schreiben wäre: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
+   <translation>Es gibt keine geplante Operation zum Prüfen: bitte Flächen auswählen und zuerst Orientierungen planen.</translation>
   </message>
   <message>
    <source>These operations have {0} orientations, and each becomes a job. There are only {1} work offsets (G54 to G59.3), so some jobs will share one. Make {0} jobs?</source>
@@ -719,6 +1126,10 @@
    <translation>Werkzeugachsen {}</translation>
   </message>
   <message>
+   <source>Tool change and index move to {}</source>
+   <translation>Werkzeugwechsel und Schwenkbewegung zu {}</translation>
+  </message>
+  <message>
    <source>Tool libraries ({})</source>
    <translation>Werkzeugbibliotheken ({})</translation>
   </message>
@@ -743,12 +1154,12 @@
    <translation>Diese Achse wird ausprobiert: {}...</translation>
   </message>
   <message>
-   <source>Turn about Z</source>
-   <translation>Drehung um Z</translation>
+   <source>Two-point contact</source>
+   <translation>Zwei-Punkt-Kontakt</translation>
   </message>
   <message>
-   <source>Two contacts</source>
-   <translation>Zwei Berührungen</translation>
+   <source>Use fixed axes</source>
+   <translation>Feste Achsen verwenden</translation>
   </message>
   <message>
    <source>Use the general rack</source>
@@ -771,20 +1182,12 @@
    <translation>Innerhalb {} (ohne Restmaterial)</translation>
   </message>
   <message>
-   <source>Without limits</source>
-   <translation>Ohne Grenzen</translation>
-  </message>
-  <message>
    <source>Work coordinates {}</source>
    <translation>Werkstückkoordinaten {}</translation>
   </message>
   <message>
    <source>above {}</source>
    <translation>über {}</translation>
-  </message>
-  <message>
-   <source>axes: {}</source>
-   <translation>Achsen: {}</translation>
   </message>
   <message>
    <source>axis tried</source>
@@ -799,10 +1202,6 @@
    <translation>abgebrochen</translation>
   </message>
   <message>
-   <source>changes of tool and axis</source>
-   <translation>Wechsel von Werkzeug und Achse</translation>
-  </message>
-  <message>
    <source>checking for gouges and collisions</source>
    <translation>Konturverletzungen und Kollisionen werden geprüft</translation>
   </message>
@@ -811,12 +1210,8 @@
    <translation>gewählte Achse</translation>
   </message>
   <message>
-   <source>chosen axis: strip width {}, {} passes as made</source>
-   <translation>gewählte Achse: Streifenbreite {}, {} Bahnen wie erzeugt</translation>
-  </message>
-  <message>
-   <source>different axes</source>
-   <translation>verschiedene Achsen</translation>
+   <source>chosen axis: strip width {}, {} passes computed</source>
+   <translation>gewählte Achse: Streifenbreite {}, {} Bahnen berechnet</translation>
   </message>
   <message>
    <source>drawing the map</source>
@@ -827,20 +1222,12 @@
    <translation>Schätzung: Streifenbreite {}, {:.0f} Bahnen, {}</translation>
   </message>
   <message>
-   <source>far</source>
-   <translation>weit</translation>
-  </message>
-  <message>
    <source>feasible</source>
    <translation>machbar</translation>
   </message>
   <message>
    <source>folder of tools...</source>
    <translation>Ordner mit Werkzeugen...</translation>
-  </message>
-  <message>
-   <source>forbidden: {}{}, {}</source>
-   <translation>verboten: {}{}, {}</translation>
   </message>
   <message>
    <source>general rack</source>
@@ -859,10 +1246,6 @@
    <translation>unmöglich (bewiesen)</translation>
   </message>
   <message>
-   <source>left to clean-up</source>
-   <translation>Restmaterial</translation>
-  </message>
-  <message>
    <source>library file...</source>
    <translation>Bibliotheksdatei...</translation>
   </message>
@@ -879,16 +1262,28 @@
    <translation>mittlerer Bahnabstand {}</translation>
   </message>
   <message>
+   <source>no faces</source>
+   <translation>keine Flächen</translation>
+  </message>
+  <message>
    <source>no other body in the document</source>
    <translation>kein anderer Körper im Dokument</translation>
+  </message>
+  <message>
+   <source>no points</source>
+   <translation>keine Stellen</translation>
   </message>
   <message>
    <source>no position reaches it</source>
    <translation>keine Stellung erreicht sie</translation>
   </message>
   <message>
-   <source>none</source>
-   <translation>keines</translation>
+   <source>no program</source>
+   <translation>kein Programm</translation>
+  </message>
+  <message>
+   <source>no vertex</source>
+   <translation>kein Eckpunkt</translation>
   </message>
   <message>
    <source>none found</source>
@@ -899,8 +1294,16 @@
    <translation>nicht geprüft</translation>
   </message>
   <message>
+   <source>not possible: {}{}, {}</source>
+   <translation>nicht möglich: {}{}, {}</translation>
+  </message>
+  <message>
    <source>not reached</source>
    <translation>nicht erreicht</translation>
+  </message>
+  <message>
+   <source>nothing near</source>
+   <translation>nichts in der Nähe</translation>
   </message>
   <message>
    <source>one tool (tab Tool)</source>
@@ -909,6 +1312,14 @@
   <message>
    <source>optimal (proven)</source>
    <translation>optimal (bewiesen)</translation>
+  </message>
+  <message>
+   <source>orientations</source>
+   <translation>Orientierungen</translation>
+  </message>
+  <message>
+   <source>orientations: {}</source>
+   <translation>Orientierungen: {}</translation>
   </message>
   <message>
    <source>other good axes</source>
@@ -921,6 +1332,10 @@
   <message>
    <source>passes: {}</source>
    <translation>Bahnen: {}</translation>
+  </message>
+  <message>
+   <source>rest material</source>
+   <translation>Restmaterial</translation>
   </message>
   <message>
    <source>screening</source>
@@ -940,11 +1355,15 @@
   </message>
   <message>
    <source>skins: {} of {} faces, {}</source>
-   <translation>Häute: {} aus {} Flächen, {}</translation>
+   <translation>Flächenverbände: {} aus {} Flächen, {}</translation>
   </message>
   <message>
    <source>strip width, estimated</source>
    <translation>Streifenbreite, geschätzt</translation>
+  </message>
+  <message>
+   <source>tool changes and index moves</source>
+   <translation>Werkzeugwechsel und Schwenkbewegungen</translation>
   </message>
   <message>
    <source>total</source>
@@ -971,8 +1390,8 @@
    <translation>{} (gedrehte Kopie)</translation>
   </message>
   <message>
-   <source>{} Collisions with the part could not be looked for: {}</source>
-   <translation>{} Kollisionen mit dem Teil konnten nicht gesucht werden: {}</translation>
+   <source>{} Collisions with the part could not be checked: {}</source>
+   <translation>{} Kollisionen mit dem Teil konnten nicht geprüft werden: {}</translation>
   </message>
   <message>
    <source>{} OK puts the plan into the document.</source>
@@ -1007,8 +1426,8 @@
    <translation>{} misst nur {}: die Einheit der Datei prüfen.</translation>
   </message>
   <message>
-   <source>{} is stale: {}. Compute it again.</source>
-   <translation>{} ist überholt: {}. Bitte neu berechnen.</translation>
+   <source>{} is out of date: {}. Recompute it.</source>
+   <translation>{} ist veraltet: {}. Bitte neu berechnen.</translation>
   </message>
   <message>
    <source>{} is {} across: check the unit of its file.</source>
@@ -1027,11 +1446,11 @@
    <translation>{} von {}</translation>
   </message>
   <message>
-   <source>{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the reasons are on the tab Axis.</source>
+   <source>{} of {} faces have an axis, {} are left as rest material, {} have none; the reasons are on the tab Axis.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen, {} haben keine; die Gründe stehen auf dem Reiter Achse.</translation>
   </message>
   <message>
-   <source>{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them into the document.</source>
+   <source>{} of {} faces have an axis, {} are left as rest material. {} OK puts them into the document.</source>
    <translation>{} von {} Flächen haben eine Achse, {} bleiben als Restmaterial stehen. {} OK übernimmt sie in das Dokument.</translation>
   </message>
   <message>
@@ -1051,8 +1470,8 @@
    <translation>{} von {} Teilflächen</translation>
   </message>
   <message>
-   <source>{} of {}: cutting {}, moves {}</source>
-   <translation>{} von {}: Schnitt {}, Bewegungen {}</translation>
+   <source>{} of {}: cutting {}, non-cutting {}</source>
+   <translation>{} von {}: Schnitt {}, Nebenzeit {}</translation>
   </message>
   <message>
    <source>{} open</source>
@@ -1112,15 +1531,11 @@
   </message>
   <message>
    <source>{}: lead-in, pass {} of {}</source>
-   <translation>{}: Einlauf, Bahn {} von {}</translation>
+   <translation>{}: Anfahren, Bahn {} von {}</translation>
   </message>
   <message>
    <source>{}: lead-out, pass {} of {}</source>
-   <translation>{}: Auslauf, Bahn {} von {}</translation>
-  </message>
-  <message>
-   <source>{}: left to clean-up</source>
-   <translation>{}: Restmaterial</translation>
+   <translation>{}: Abfahren, Bahn {} von {}</translation>
   </message>
   <message>
    <source>{}: link, pass {} of {}</source>
@@ -1131,16 +1546,20 @@
    <translation>{}: keine Achse</translation>
   </message>
   <message>
-   <source>{}: no axis looked at yet</source>
-   <translation>{}: noch keine Achse betrachtet</translation>
+   <source>{}: no axis tested yet</source>
+   <translation>{}: noch keine Achse geprüft</translation>
   </message>
   <message>
    <source>{}: not begun</source>
    <translation>{}: nicht begonnen</translation>
   </message>
   <message>
-   <source>{}: the axes looked at so far</source>
-   <translation>{}: die bisher betrachteten Achsen</translation>
+   <source>{}: rest material</source>
+   <translation>{}: Restmaterial</translation>
+  </message>
+  <message>
+   <source>{}: the axes tested so far</source>
+   <translation>{}: die bisher geprüften Achsen</translation>
   </message>
   <message>
    <source>{}: the largest tool that was found to reach, on {} of the area so far</source>
@@ -1182,16 +1601,16 @@
    <translation>Maschine</translation>
   </message>
   <message>
-   <source>Machine that the program is for: its rotary angles stand in it.</source>
-   <translation>Maschine, für die das Programm ist: ihre Drehwinkel stehen darin.</translation>
+   <source>Machine that the program is for: the program contains its rotary angles.</source>
+   <translation>Maschine, für die das Programm ist: Es enthält deren Drehwinkel.</translation>
   </message>
   <message>
    <source>NC program besides plan.json and the CL files, with its setup sheet.</source>
    <translation>NC-Programm neben plan.json und den CL-Dateien, mit Einrichteblatt.</translation>
   </message>
   <message>
-   <source>Opens the planning panel with this machine and place on its table, and computes: axes, passes and collisions are then those of the machine.</source>
-   <translation>Öffnet das Planungsfenster mit dieser Maschine und diesem Platz auf ihrem Tisch und rechnet: Achsen, Bahnen und Kollisionen sind dann die der Maschine.</translation>
+   <source>Opens the planning panel with this machine and this position on its table, and computes: axes, passes and collisions are then those of the machine.</source>
+   <translation>Öffnet die Planung mit dieser Maschine und diesem Platz auf ihrem Tisch und rechnet: Achsen, Bahnen und Kollisionen sind dann die der Maschine.</translation>
   </message>
   <message>
    <source>Origin on the table</source>
@@ -1202,8 +1621,8 @@
    <translation>Programm</translation>
   </message>
   <message>
-   <source>Sets the part higher on the table, in Z of its origin, and writes. It may help; only the new program tells.</source>
-   <translation>Setzt das Teil auf dem Tisch höher, in Z seines Ursprungs, und schreibt. Das kann helfen; erst das neue Programm zeigt es.</translation>
+   <source>Sets the part higher on the table, in Z of its origin, and writes. This may help: check the new program.</source>
+   <translation>Setzt das Teil auf dem Tisch höher, in Z seines Ursprungs, und schreibt. Das kann helfen: das neue Programm prüfen.</translation>
   </message>
   <message>
    <source>Stop</source>
@@ -1211,7 +1630,7 @@
   </message>
   <message>
    <source>Stops; the folder stays as it is.</source>
-   <translation>Hält an; der Ordner bleibt, wie er ist.</translation>
+   <translation>Stoppt; der Ordner bleibt, wie er ist.</translation>
   </message>
   <message>
    <source>The dialect of the controller. The program is the one that the command toolaxis post writes.</source>
@@ -1257,12 +1676,8 @@
    <translation>Kollisionen von Fräser, Schaft, Halter und Maschine mit dem Teil, Spannmitteln und untereinander, und Konturverletzungen, die Prüfen fand.</translation>
   </message>
   <message>
-   <source>How many times faster than the machine it is played.</source>
-   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
-  </message>
-  <message>
-   <source>Look from the machine's bed</source>
-   <translation>Vom Maschinenbett aus betrachten</translation>
+   <source>Keep the machine bed still</source>
+   <translation>Maschinenbett steht still</translation>
   </message>
   <message>
    <source>Machine</source>
@@ -1274,7 +1689,7 @@
   </message>
   <message>
    <source>Moves the tool along the passes of all operations.</source>
-   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
+   <translation>Bewegt das Werkzeug entlang der Bahnen aller Operationen.</translation>
   </message>
   <message>
    <source>Opens a machine file: TOML, or one of FreeCAD (.fcm).</source>
@@ -1289,28 +1704,32 @@
    <translation>Abspielen</translation>
   </message>
   <message>
+   <source>Playback speed, as a multiple of real time.</source>
+   <translation>Abspielgeschwindigkeit als Vielfaches der Echtzeit.</translation>
+  </message>
+  <message>
    <source>Plays all operations in their order, with the index moves between them.</source>
    <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
   </message>
   <message>
-   <source>The camera stays with the machine's bed, so that the table turns; otherwise it stays with the part.</source>
+   <source>Positions of the rotary axes for each operation, in both solutions. Click one to see it.</source>
+   <translation>Stellungen der Drehachsen bei jeder Operation, in beiden Lösungen. Ein Klick zeigt die Lösung.</translation>
+  </message>
+  <message>
+   <source>The camera stays with the machine's bed, so that the table rotates; otherwise it stays with the part.</source>
    <translation>Die Kamera bleibt beim Maschinenbett, so dass sich der Tisch dreht; sonst bleibt sie beim Teil.</translation>
   </message>
   <message>
-   <source>The machine whose rotary axes are to hold the tool axes. Its ranges, travels and bodies are looked at for every operation.</source>
-   <translation>Die Maschine, deren Drehachsen die Werkzeugachsen halten sollen. Ihre Bereiche, Verfahrwege und Körper werden für jede Operation betrachtet.</translation>
+   <source>The machine whose rotary axes have to reach the tool axes. Its ranges, travels and bodies are checked for every operation.</source>
+   <translation>Die Maschine, deren Drehachsen die Werkzeugachsen erreichen müssen. Ihre Bereiche, Verfahrwege und Körper werden für jede Operation geprüft.</translation>
   </message>
   <message>
-   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
-   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
+   <source>Time so far and in total, split into cutting and non-cutting: lead-ins, lead-outs, links, index moves and tool changes.</source>
+   <translation>Bisherige und gesamte Zeit, aufgeteilt in Schnitt und Nebenzeit: An- und Abfahren, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
   <message>
    <source>Two rotary axes reach almost every tool axis in two positions. The bold one is used: closest to the previous operation, inside all ranges and travels, and without collisions. Problems are listed below the angles.</source>
    <translation>Zwei Drehachsen erreichen fast jede Werkzeugachse in zwei Stellungen. Verwendet wird die fett gedruckte: der vorigen Operation am nächsten, innerhalb aller Bereiche und Verfahrwege und ohne Kollision. Probleme stehen unter den Winkeln.</translation>
-  </message>
-  <message>
-   <source>Where the rotary axes stand for each operation, in both solutions. Click one to see it.</source>
-   <translation>Wo die Drehachsen bei jeder Operation stehen, in beiden Lösungen. Ein Klick zeigt die Lösung.</translation>
   </message>
   <message>
    <source>X of the document's origin in machine coordinates, all axes at zero, in mm.</source>
@@ -1360,20 +1779,20 @@
    <translation>Trägt entlang der Bahnen Material ab.</translation>
   </message>
   <message>
+   <source>Results of the axis of the operation.</source>
+   <translation>Ergebnisse der Achse der Operation.</translation>
+  </message>
+  <message>
    <source>Shows pictures of the plan in a window: passes, contacts, angles and axis motion.</source>
    <translation>Zeigt Bilder des Plans in einem Fenster: Bahnen, Kontakte, Winkel und Achsbewegungen.</translation>
   </message>
   <message>
    <source>Tool position</source>
-   <translation>Werkzeugstelle</translation>
+   <translation>Werkzeugposition</translation>
   </message>
   <message>
    <source>Verify</source>
    <translation>Prüfen</translation>
-  </message>
-  <message>
-   <source>What the axis of the operation comes to.</source>
-   <translation>Was die Achse der Operation ergibt.</translation>
   </message>
  </context>
  <context>
@@ -1451,20 +1870,28 @@
    <translation>Aufmaße einzelner Flächen in mm, nach Flächennummer; sie ersetzen das Aufmaß unter Bahnen.</translation>
   </message>
   <message>
-   <source>Along the parameters of the face; in parallel planes that contain the tool axis; following the scallop height, so that passes lie as far apart as their strips are wide; or whichever of the first and the third is shorter. All but the first need fixed axes.</source>
-   <translation>Längs der Parameter der Fläche; in parallelen Ebenen, in denen die Werkzeugachse liegt; der Rillenhöhe folgend, sodass die Bahnen so weit auseinander liegen, wie ihre Streifen breit sind; oder die kürzere von erster und dritter Art. Alle außer der ersten brauchen feste Achsen.</translation>
+   <source>Along parameters: along the parameter lines of the face.
+In parallel planes: in planes that contain the tool axis.
+Following the scallop height: passes as far apart as their strips are wide.
+Whichever is shorter: the first or the third of these.
+All but the first need fixed axes.</source>
+   <translation>Entlang der Parameter: entlang der Parameterlinien der Fläche.
+In parallelen Ebenen: in Ebenen, in denen die Werkzeugachse liegt.
+Der Rillenhöhe folgend: Bahnen so weit auseinander, wie ihre Streifen breit sind.
+Die kürzeren von beiden: die erste oder die dritte dieser Arten.
+Alle außer der ersten brauchen feste Achsen.</translation>
   </message>
   <message>
-   <source>Also plans the same faces by other methods, and lists what they come to.</source>
+   <source>Also plans the same faces by other methods, and lists their results.</source>
    <translation>Plant dieselben Flächen auch mit anderen Verfahren und stellt die Ergebnisse nebeneinander.</translation>
+  </message>
+  <message>
+   <source>Angle between the side of the cutter and its axis.</source>
+   <translation>Winkel zwischen dem Mantel des Fräsers und seiner Achse.</translation>
   </message>
   <message>
    <source>Avoid faces</source>
    <translation>Flächen meiden</translation>
-  </message>
-  <message>
-   <source>Axes</source>
-   <translation>Achsen</translation>
   </message>
   <message>
    <source>Axis</source>
@@ -1480,7 +1907,7 @@
   </message>
   <message>
    <source>Ball</source>
-   <translation>Kugel</translation>
+   <translation>Kugelfräser</translation>
   </message>
   <message>
    <source>Bodies to avoid</source>
@@ -1489,6 +1916,10 @@
   <message>
    <source>Bull nose</source>
    <translation>Torusfräser</translation>
+  </message>
+  <message>
+   <source>Clamped side</source>
+   <translation>Gespannte Seite</translation>
   </message>
   <message>
    <source>Collisions of cutter, shank, holder and machine with the part, clamps and each other, and gouges that Verify found.</source>
@@ -1505,6 +1936,18 @@
   <message>
    <source>Cone axis</source>
    <translation>Kegelachse</translation>
+  </message>
+  <message>
+   <source>Cone axis, X: the middle of the allowed tool axes.</source>
+   <translation>Kegelachse, X: die Mitte der erlaubten Werkzeugachsen.</translation>
+  </message>
+  <message>
+   <source>Cone axis, Y: the middle of the allowed tool axes.</source>
+   <translation>Kegelachse, Y: die Mitte der erlaubten Werkzeugachsen.</translation>
+  </message>
+  <message>
+   <source>Cone axis, Z: the middle of the allowed tool axes.</source>
+   <translation>Kegelachse, Z: die Mitte der erlaubten Werkzeugachsen.</translation>
   </message>
   <message>
    <source>Corner radius</source>
@@ -1547,6 +1990,10 @@
    <translation>Zu bearbeitende Flächen</translation>
   </message>
   <message>
+   <source>Feed and speed</source>
+   <translation>Vorschub und Drehzahl</translation>
+  </message>
+  <message>
    <source>Feed direction locked</source>
    <translation>Vorschubrichtung gesperrt</translation>
   </message>
@@ -1555,8 +2002,8 @@
    <translation>Vorschub</translation>
   </message>
   <message>
-   <source>Feed rate of the cutting motion.</source>
-   <translation>Vorschub der Schnittbewegung.</translation>
+   <source>Feed rate of the cutting moves.</source>
+   <translation>Vorschub der Schnittbewegungen.</translation>
   </message>
   <message>
    <source>Filter: Face12, or &lt; 5 for small faces</source>
@@ -1573,42 +2020,6 @@
   <message>
    <source>From the tip to the lower face of the holder.</source>
    <translation>Von der Spitze bis zur Unterseite des Halters.</translation>
-  </message>
-  <message>
-   <source>Greatest angle</source>
-   <translation>Größter Winkel</translation>
-  </message>
-  <message>
-   <source>Greatest angle between the tool axis and the middle.</source>
-   <translation>Größter Winkel zwischen Werkzeugachse und Mitte.</translation>
-  </message>
-  <message>
-   <source>Greatest distance of neighbouring passes, whatever the scallop height allows; 0 for none.</source>
-   <translation>Größter Abstand benachbarter Bahnen, was auch immer die Rillenhöhe zulässt; 0 für keinen.</translation>
-  </message>
-  <message>
-   <source>Greatest height left between neighbouring passes.</source>
-   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
-  </message>
-  <message>
-   <source>Greatest number of tools of the rack that are used.</source>
-   <translation>So viele Werkzeuge des Magazins werden höchstens eingesetzt.</translation>
-  </message>
-  <message>
-   <source>Greatest roughness across the feed.</source>
-   <translation>Größte Rauheit quer zum Vorschub.</translation>
-  </message>
-  <message>
-   <source>Greatest turn of the tool axis about the middle.</source>
-   <translation>Größte Drehung der Werkzeugachse um die Mitte.</translation>
-  </message>
-  <message>
-   <source>Half angle</source>
-   <translation>Halber Winkel</translation>
-  </message>
-  <message>
-   <source>Held side</source>
-   <translation>Gespannte Seite</translation>
   </message>
   <message>
    <source>Holder, heights from its lower face</source>
@@ -1639,24 +2050,12 @@
    <translation>Wie weit das Rohteil auf der Seite -Z über das Teil hinausreicht.</translation>
   </message>
   <message>
-   <source>How many different axes there are in all; automatic: every number is tried, and a curve shows what each comes to.</source>
-   <translation>Wie viele verschiedene Achsen es insgesamt gibt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt, was dabei herauskommt.</translation>
+   <source>How the axis of each sub-surface is found; highest axis jerk needs a machine; the methods below it are for comparison.</source>
+   <translation>Wie die Achse jeder Teilfläche gefunden wird; höchste Achsdynamik braucht eine Maschine; die Verfahren darunter dienen dem Vergleich.</translation>
   </message>
   <message>
-   <source>How many times faster than the machine it is played.</source>
-   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
-  </message>
-  <message>
-   <source>How the axis of each sub-surface is found; greatest jerk needs a machine; those after it are there for comparison.</source>
-   <translation>Wie die Achse jeder Teilfläche gefunden wird; größter Ruck braucht eine Maschine; alle danach dienen dem Vergleich.</translation>
-  </message>
-  <message>
-   <source>Inclination of the side from the axis.</source>
-   <translation>Neigung der Seite gegen die Achse.</translation>
-  </message>
-  <message>
-   <source>Into how many sub-surfaces each face is divided; automatic: as many as pay for their index moves, around bosses too.</source>
-   <translation>In wie viele Teilflächen jede Fläche geteilt wird; automatisch: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
+   <source>If all faces of a part with blades are chosen, one blade is planned. Its operations are rotated to the other blades and proven there.</source>
+   <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant. Ihre Operationen werden auf die anderen Schaufeln gedreht und dort nachgewiesen.</translation>
   </message>
   <message>
    <source>Job</source>
@@ -1675,32 +2074,16 @@
    <translation>Anfahrradius</translation>
   </message>
   <message>
-   <source>Lean at least</source>
-   <translation>Min. Neigung</translation>
-  </message>
-  <message>
-   <source>Least angle between the tool axis and the middle.</source>
-   <translation>Kleinster Winkel zwischen Werkzeugachse und Mitte.</translation>
-  </message>
-  <message>
-   <source>Least angle of ball ends to the normal of the face, so that the tip does not cut; 0 for none.</source>
-   <translation>Kleinster Winkel von Kugelfräsern zur Flächennormalen, damit die Spitze nicht schneidet; 0 für keinen.</translation>
-  </message>
-  <message>
-   <source>Least turn of the tool axis about the middle.</source>
-   <translation>Kleinste Drehung der Werkzeugachse um die Mitte.</translation>
+   <source>Left by roughing</source>
+   <translation>Schruppaufmaß</translation>
   </message>
   <message>
    <source>Length of the cutting edge from the tip; above it the shank begins. 0: two diameters, as far as the stick-out allows.</source>
    <translation>Länge der Schneide von der Spitze an; darüber beginnt der Schaft. 0: zwei Durchmesser, soweit die Auskraglänge reicht.</translation>
   </message>
   <message>
-   <source>Lists all faces, or only those that can be seen in the 3D view from where one looks now, or only those that cannot: hidden bodies and what other faces cover. The list follows when the view is turned.</source>
-   <translation>Listet alle Flächen auf, oder nur die, die in der 3D-Ansicht von da zu sehen sind, von wo man gerade blickt, oder nur die anderen: ausgeblendete Körper und was andere Flächen verdecken. Die Liste folgt, wenn die Ansicht gedreht wird.</translation>
-  </message>
-  <message>
-   <source>Looks for the axes of the faces with what the tabs hold; nothing enters the document yet.</source>
-   <translation>Sucht die Achsen der Flächen mit dem, was auf den Reitern steht; ins Dokument kommt noch nichts.</translation>
+   <source>Lists all faces, those in sight in the 3D view, or those hidden there. Hidden: the body is not shown, or other faces cover the face. The list follows the view.</source>
+   <translation>Listet alle Flächen auf, die in der 3D-Ansicht sichtbaren oder die dort verdeckten. Verdeckt: Der Körper ist ausgeblendet, oder andere Flächen liegen davor. Die Liste folgt der Ansicht.</translation>
   </message>
   <message>
    <source>Machine</source>
@@ -1712,43 +2095,91 @@
   </message>
   <message>
    <source>Margins of the stock</source>
-   <translation>Aufmaß des Rohteils</translation>
+   <translation>Zugaben des Rohteils</translation>
+  </message>
+  <message>
+   <source>Material to leave on the faces.</source>
+   <translation>Material, das auf den Flächen stehen bleiben soll.</translation>
+  </message>
+  <message>
+   <source>Max. angle</source>
+   <translation>Max. Winkel</translation>
+  </message>
+  <message>
+   <source>Max. step-over</source>
+   <translation>Max. Bahnabstand</translation>
+  </message>
+  <message>
+   <source>Maximum angle between the tool axis and the cone axis.</source>
+   <translation>Größter Winkel zwischen Werkzeugachse und Kegelachse.</translation>
+  </message>
+  <message>
+   <source>Maximum azimuth of the tool axis about the cone axis.</source>
+   <translation>Größter Azimut der Werkzeugachse um die Kegelachse.</translation>
+  </message>
+  <message>
+   <source>Maximum distance between neighbouring passes, whatever the scallop height allows; 0 = no limit.</source>
+   <translation>Größter Abstand benachbarter Bahnen, was auch immer die Rillenhöhe zulässt; 0 = keine Grenze.</translation>
+  </message>
+  <message>
+   <source>Maximum height left between neighbouring passes.</source>
+   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
+   <source>Maximum number of orientations.</source>
+   <translation>Größte Zahl der Orientierungen.</translation>
+  </message>
+  <message>
+   <source>Maximum number of tools used from the rack.</source>
+   <translation>So viele Werkzeuge des Magazins werden höchstens eingesetzt.</translation>
+  </message>
+  <message>
+   <source>Maximum roughness across the feed.</source>
+   <translation>Größte Rauheit quer zum Vorschub.</translation>
   </message>
   <message>
    <source>Method</source>
    <translation>Verfahren</translation>
   </message>
   <message>
-   <source>Middle of the allowed axes, x.</source>
-   <translation>Mitte der erlaubten Achsen, x.</translation>
-  </message>
-  <message>
-   <source>Middle of the allowed axes, y.</source>
-   <translation>Mitte der erlaubten Achsen, y.</translation>
-  </message>
-  <message>
-   <source>Middle of the allowed axes, z.</source>
-   <translation>Mitte der erlaubten Achsen, z.</translation>
+   <source>Min. lean</source>
+   <translation>Min. Anstellwinkel</translation>
   </message>
   <message>
    <source>Minimise</source>
    <translation>Minimieren</translation>
   </message>
   <message>
+   <source>Minimum angle between the tool axis and the cone axis.</source>
+   <translation>Kleinster Winkel zwischen Werkzeugachse und Kegelachse.</translation>
+  </message>
+  <message>
+   <source>Minimum angle of ball ends to the normal of the face, so that the tip does not cut; 0 = no limit.</source>
+   <translation>Kleinster Winkel von Kugelfräsern zur Flächennormalen, damit die Spitze nicht schneidet; 0 = keine Grenze.</translation>
+  </message>
+  <message>
+   <source>Minimum azimuth of the tool axis about the cone axis.</source>
+   <translation>Kleinster Azimut der Werkzeugachse um die Kegelachse.</translation>
+  </message>
+  <message>
    <source>Moves the tool along the passes of all operations.</source>
-   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
+   <translation>Bewegt das Werkzeug entlang der Bahnen aller Operationen.</translation>
   </message>
   <message>
    <source>Moves tool and holder along the passes.</source>
    <translation>Bewegt Werkzeug und Halter entlang der Bahnen.</translation>
   </message>
   <message>
-   <source>Number of different tool axes at most.</source>
-   <translation>Höchste Zahl verschiedener Werkzeugachsen.</translation>
+   <source>Number of orientations in all; automatic: every number is tried, and a curve shows the result of each.</source>
+   <translation>Zahl der Orientierungen insgesamt; automatisch: jede Anzahl wird versucht, und eine Kurve zeigt die Ergebnisse.</translation>
   </message>
   <message>
    <source>Number of sub-surfaces of each face.</source>
    <translation>Zahl der Teilflächen jeder Fläche.</translation>
+  </message>
+  <message>
+   <source>Number of sub-surfaces of each face; automatic: as many as save more than their index moves cost, around bosses too.</source>
+   <translation>Zahl der Teilflächen jeder Fläche; automatisch: so viele, wie sich trotz ihrer Schwenkbewegungen lohnen, auch um Zapfen herum.</translation>
   </message>
   <message>
    <source>Numbers of faces of the part that no tool may touch.</source>
@@ -1757,6 +2188,10 @@
   <message>
    <source>One tool, or a rack to choose from: large tools begin, smaller ones finish what they leave.</source>
    <translation>Ein Werkzeug, oder ein Magazin zur Auswahl: Große beginnen, kleinere bearbeiten, was sie übrig lassen.</translation>
+  </message>
+  <message>
+   <source>Orientations</source>
+   <translation>Orientierungen</translation>
   </message>
   <message>
    <source>Origin</source>
@@ -1779,8 +2214,8 @@
    <translation>Bilder...</translation>
   </message>
   <message>
-   <source>Plan one blade, turn it</source>
-   <translation>Eine Schaufel planen und drehen</translation>
+   <source>Plan one blade, copy to others</source>
+   <translation>Eine Schaufel planen und übertragen</translation>
   </message>
   <message>
    <source>Plan orientations</source>
@@ -1803,6 +2238,10 @@
    <translation>Alle Operationen abspielen</translation>
   </message>
   <message>
+   <source>Playback speed, as a multiple of real time.</source>
+   <translation>Abspielgeschwindigkeit als Vielfaches der Echtzeit.</translation>
+  </message>
+  <message>
    <source>Plays all operations in sequence with the index moves between them, on the machine if one is chosen.</source>
    <translation>Spielt alle Operationen der Reihe nach mit den Schwenkbewegungen dazwischen ab, auf der Maschine, wenn eine gewählt ist.</translation>
   </message>
@@ -1815,16 +2254,16 @@
    <translation>Punkt</translation>
   </message>
   <message>
-   <source>Radius of the arcs on which the tool comes down to passes and is lifted from them, wherever these are proven free; 0 for straight ramps.</source>
-   <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen heran- und von ihnen wegfährt, wo sie nachweislich frei sind; 0 für gerade Rampen.</translation>
+   <source>Quantity that the choice of the tool axis minimises.</source>
+   <translation>Größe, nach deren kleinstem Wert die Werkzeugachse gewählt wird.</translation>
+  </message>
+  <message>
+   <source>Radius of the arcs on which the tool enters and leaves passes, wherever these are proven free; 0 = straight ramps.</source>
+   <translation>Radius der Bögen, auf denen das Werkzeug an Bahnen an- und von ihnen abfährt, wo sie nachweislich frei sind; 0 = gerade Rampen.</translation>
   </message>
   <message>
    <source>Radius of the rounded corner.</source>
    <translation>Radius der gerundeten Ecke.</translation>
-  </message>
-  <message>
-   <source>Rates</source>
-   <translation>Vorschub und Drehzahl</translation>
   </message>
   <message>
    <source>Raw stock</source>
@@ -1851,12 +2290,16 @@
    <translation>Beste Achse wiederherstellen</translation>
   </message>
   <message>
-   <source>Revolutions of the spindle per minute.</source>
-   <translation>Umdrehungen der Spindel in der Minute.</translation>
+   <source>Results of the axis, and beside them those of the axis tried.</source>
+   <translation>Ergebnisse der Achse, daneben die der ausprobierten.</translation>
   </message>
   <message>
    <source>Roman's rule</source>
    <translation>Regel von Roman</translation>
+  </message>
+  <message>
+   <source>Roughing stock and faces</source>
+   <translation>Schruppaufmaß und Flächen</translation>
   </message>
   <message>
    <source>Roughness Ra</source>
@@ -1867,8 +2310,12 @@
    <translation>Rillenhöhe</translation>
   </message>
   <message>
-   <source>Sets this in the fields and computes again. It may help; only the new result tells.</source>
-   <translation>Trägt dies in die Felder ein und rechnet neu. Es kann helfen; erst das neue Ergebnis sagt es.</translation>
+   <source>Searches for the axes of the faces with the settings of the tabs; nothing enters the document yet.</source>
+   <translation>Sucht die Achsen der Flächen mit den Einstellungen der Reiter; ins Dokument kommt noch nichts.</translation>
+  </message>
+  <message>
+   <source>Sets this in the fields and computes again. This may help: check the new result.</source>
+   <translation>Trägt dies in die Felder ein und rechnet neu. Das kann helfen: das neue Ergebnis prüfen.</translation>
   </message>
   <message>
    <source>Setup</source>
@@ -1895,28 +2342,16 @@
    <translation>Gespannte Seite des Teils: Dort fährt kein Werkzeug hin. Was von den Flächen dort liegt, bleibt für eine andere Aufspannung.</translation>
   </message>
   <message>
-   <source>Spindle</source>
-   <translation>Spindel</translation>
+   <source>Spindle speed</source>
+   <translation>Drehzahl</translation>
   </message>
   <message>
-   <source>Step-over at most</source>
-   <translation>Max. Bahnabstand</translation>
+   <source>Spindle speed.</source>
+   <translation>Spindeldrehzahl.</translation>
   </message>
   <message>
    <source>Stick-out</source>
    <translation>Auskraglänge</translation>
-  </message>
-  <message>
-   <source>Stock</source>
-   <translation>Schruppaufmaß</translation>
-  </message>
-  <message>
-   <source>Stock and faces</source>
-   <translation>Schruppaufmaß und Flächen</translation>
-  </message>
-  <message>
-   <source>Stock left on the faces.</source>
-   <translation>Was auf den Flächen stehen bleibt.</translation>
   </message>
   <message>
    <source>Stock that roughing left on the faces (at least the allowance). Shank and holder keep clear of it. 0: the faces are finished.</source>
@@ -1927,8 +2362,8 @@
    <translation>Stopp</translation>
   </message>
   <message>
-   <source>Stops the computation; what is found of whole faces by then stays.</source>
-   <translation>Hält die Berechnung an; was bis dahin für ganze Flächen gefunden ist, bleibt.</translation>
+   <source>Stops the computation; results of faces finished by then are kept.</source>
+   <translation>Stoppt die Berechnung; Ergebnisse bis dahin fertiger Flächen bleiben.</translation>
   </message>
   <message>
    <source>Strategy</source>
@@ -1940,11 +2375,15 @@
   </message>
   <message>
    <source>Takes the vertex that is selected in the 3D view as the origin. It moves along with the part.</source>
-   <translation>Nimmt den in der 3D-Ansicht ausgewählten Punkt als Nullpunkt. Er bewegt sich mit dem Teil.</translation>
+   <translation>Nimmt den in der 3D-Ansicht ausgewählten Eckpunkt als Nullpunkt. Er bewegt sich mit dem Teil.</translation>
+  </message>
+  <message>
+   <source>Taper half angle</source>
+   <translation>Halber Kegelwinkel</translation>
   </message>
   <message>
    <source>Tapered</source>
-   <translation>Kegelig</translation>
+   <translation>Konischer Fräser</translation>
   </message>
   <message>
    <source>The face whose map is shown.</source>
@@ -1960,11 +2399,11 @@
   </message>
   <message>
    <source>The point of the box. The box lies along X, Y and Z of the document: left is -X, front is -Y.</source>
-   <translation>Der Punkt des Quaders. Der Quader liegt längs X, Y und Z des Dokuments: links ist -X, vorn ist -Y.</translation>
+   <translation>Der Punkt des Quaders. Der Quader liegt entlang X, Y und Z des Dokuments: links ist -X, vorn ist -Y.</translation>
   </message>
   <message>
-   <source>The rest of the part is always kept clear of; ticked bodies too.</source>
-   <translation>Der Rest des Teils wird immer gemieden, angekreuzte Körper auch.</translation>
+   <source>The rest of the part and ticked bodies are always avoided.</source>
+   <translation>Der Rest des Teils und angekreuzte Körper werden immer gemieden.</translation>
   </message>
   <message>
    <source>The tools of the plan in their colours, what they machine, and their time.</source>
@@ -1979,8 +2418,8 @@
    <translation>Neigung</translation>
   </message>
   <message>
-   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
-   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
+   <source>Time so far and in total, split into cutting and non-cutting: lead-ins, lead-outs, links, index moves and tool changes.</source>
+   <translation>Bisherige und gesamte Zeit, aufgeteilt in Schnitt und Nebenzeit: An- und Abfahren, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
   <message>
    <source>To and fro, or all passes one way so that the cutter climbs or cuts conventionally.</source>
@@ -1996,7 +2435,7 @@
   </message>
   <message>
    <source>Tool position</source>
-   <translation>Werkzeugstelle</translation>
+   <translation>Werkzeugposition</translation>
   </message>
   <message>
    <source>Tool source</source>
@@ -2035,28 +2474,16 @@
    <translation>Was andere Verfahren für dieselben Flächen brauchen.</translation>
   </message>
   <message>
-   <source>What the axis comes to, and beside it what the one comes to that is tried.</source>
-   <translation>Was die Achse ergibt, und daneben, was die versuchte ergibt.</translation>
-  </message>
-  <message>
    <source>What the part is cut from: it goes into CAM jobs and onto the setup sheet.</source>
-   <translation>Woraus das Teil gefräst wird: steht in den CAM-Jobs und auf dem Einrichteblatt.</translation>
-  </message>
-  <message>
-   <source>What the tool axis is chosen by.</source>
-   <translation>Wonach die Werkzeugachse gewählt wird.</translation>
-  </message>
-  <message>
-   <source>Where all faces of a part with blades are chosen, one blade is planned, and what is done there is turned to the others and proven there.</source>
-   <translation>Sind alle Flächen eines Teils mit Schaufeln gewählt, wird eine Schaufel geplant; was dort geschieht, wird zu den anderen gedreht und dort nachgewiesen.</translation>
-  </message>
-  <message>
-   <source>Where the work coordinate systems, jobs and programs have X, Y and Z zero.</source>
-   <translation>Wo Werkstückkoordinatensysteme, Jobs und Programme X, Y und Z null haben.</translation>
+   <translation>Woraus das Teil gefräst wird: steht in den CAM-Aufträgen und auf dem Einrichteblatt.</translation>
   </message>
   <message>
    <source>Whether the tool axis stands still while it cuts, or how it moves.</source>
    <translation>Ob die Werkzeugachse beim Schneiden stillsteht, oder wie sie sich bewegt.</translation>
+  </message>
+  <message>
+   <source>Zero point of work coordinate systems, jobs and programs.</source>
+   <translation>Nullpunkt der Werkstückkoordinatensysteme, Aufträge und Programme.</translation>
   </message>
   <message>
    <source>all faces</source>
@@ -2064,7 +2491,7 @@
   </message>
   <message>
    <source>along parameters</source>
-   <translation>längs der Parameter</translation>
+   <translation>entlang der Parameter</translation>
   </message>
   <message>
    <source>any machine</source>
@@ -2079,12 +2506,12 @@
    <translation>beliebig, Achse in einem Kegel</translation>
   </message>
   <message>
-   <source>any, tilt and turn limited</source>
-   <translation>beliebig, Neigung und Drehung begrenzt</translation>
+   <source>any, tilt and azimuth limited</source>
+   <translation>beliebig, Neigung und Azimut begrenzt</translation>
   </message>
   <message>
    <source>as the CAM job makes it</source>
-   <translation>wie der CAM-Job es anlegt</translation>
+   <translation>wie der CAM-Auftrag es anlegt</translation>
   </message>
   <message>
    <source>at most</source>
@@ -2132,7 +2559,7 @@
   </message>
   <message>
    <source>box with margins</source>
-   <translation>Quader mit Aufmaß</translation>
+   <translation>Quader mit Zugaben</translation>
   </message>
   <message>
    <source>climb</source>
@@ -2159,12 +2586,12 @@
    <translation>der Rillenhöhe folgend</translation>
   </message>
   <message>
-   <source>greatest jerk along passes</source>
-   <translation>größter Ruck längs der Bahnen</translation>
-  </message>
-  <message>
    <source>hidden</source>
    <translation>verdeckte</translation>
+  </message>
+  <message>
+   <source>highest axis jerk along passes</source>
+   <translation>höchste Achsdynamik (Ruck) entlang der Bahnen</translation>
   </message>
   <message>
    <source>in parallel planes</source>
@@ -2203,10 +2630,6 @@
    <translation>Ursprung des Teils</translation>
   </message>
   <message>
-   <source>picked vertex</source>
-   <translation>gewählter Punkt</translation>
-  </message>
-  <message>
    <source>point of the part</source>
    <translation>Punkt des Teils</translation>
   </message>
@@ -2217,6 +2640,10 @@
   <message>
    <source>sectors</source>
    <translation>Sektoren</translation>
+  </message>
+  <message>
+   <source>selected vertex</source>
+   <translation>ausgewählter Eckpunkt</translation>
   </message>
   <message>
    <source>strip width and roughness</source>
@@ -2244,7 +2671,7 @@
   </message>
   <message>
    <source>two-point contact</source>
-   <translation>Berührung an zwei Punkten</translation>
+   <translation>Zwei-Punkt-Kontakt</translation>
   </message>
   <message>
    <source>whichever is shorter</source>
@@ -2266,32 +2693,32 @@
    <translation>Kollisionen von Fräser, Schaft, Halter und Maschine mit dem Teil, Spannmitteln und untereinander, und Konturverletzungen, die Prüfen fand.</translation>
   </message>
   <message>
-   <source>How many times faster than the machine it is played.</source>
-   <translation>Um wie viel schneller als auf der Maschine abgespielt wird.</translation>
-  </message>
-  <message>
-   <source>Look from the machine's bed</source>
-   <translation>Vom Maschinenbett aus betrachten</translation>
+   <source>Keep the machine bed still</source>
+   <translation>Maschinenbett steht still</translation>
   </message>
   <message>
    <source>Moves the tool along the passes of all operations.</source>
-   <translation>Bewegt das Werkzeug längs der Bahnen aller Operationen.</translation>
+   <translation>Bewegt das Werkzeug entlang der Bahnen aller Operationen.</translation>
   </message>
   <message>
    <source>Play</source>
    <translation>Abspielen</translation>
   </message>
   <message>
+   <source>Playback speed, as a multiple of real time.</source>
+   <translation>Abspielgeschwindigkeit als Vielfaches der Echtzeit.</translation>
+  </message>
+  <message>
    <source>Plays all operations in their order, with the index moves between them.</source>
    <translation>Spielt alle Operationen in ihrer Reihenfolge ab, mit den Schwenkbewegungen dazwischen.</translation>
   </message>
   <message>
-   <source>The camera stays with the machine's bed, so that the table turns; otherwise it stays with the part.</source>
+   <source>The camera stays with the machine's bed, so that the table rotates; otherwise it stays with the part.</source>
    <translation>Die Kamera bleibt beim Maschinenbett, so dass sich der Tisch dreht; sonst bleibt sie beim Teil.</translation>
   </message>
   <message>
-   <source>Time so far and in all, and how it divides into cutting and all other moves: lead-ins, links, index moves and changes of tool.</source>
-   <translation>Bisherige und gesamte Zeit, und wie sie sich auf Schnitt und alle anderen Bewegungen verteilt: Ein- und Auslauf, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
+   <source>Time so far and in total, split into cutting and non-cutting: lead-ins, lead-outs, links, index moves and tool changes.</source>
+   <translation>Bisherige und gesamte Zeit, aufgeteilt in Schnitt und Nebenzeit: An- und Abfahren, Verbindungen, Schwenkbewegungen und Werkzeugwechsel.</translation>
   </message>
  </context>
  <context>
@@ -2309,32 +2736,28 @@
    <translation> U/min</translation>
   </message>
   <message>
-   <source>Colour of the cutting motion.</source>
-   <translation>Farbe der schneidenden Bewegung.</translation>
+   <source>Colour of the cutting moves.</source>
+   <translation>Farbe der Schnittbewegungen.</translation>
   </message>
   <message>
-   <source>Colour of the motion between passes.</source>
-   <translation>Farbe der Bewegung zwischen den Bahnen.</translation>
-  </message>
-  <message>
-   <source>Colours while a plan is looked at</source>
-   <translation>Farben, während ein Plan betrachtet wird</translation>
+   <source>Colour of the links between passes.</source>
+   <translation>Farbe der Verbindungen zwischen den Bahnen.</translation>
   </message>
   <message>
    <source>Computing</source>
    <translation>Rechnen</translation>
   </message>
   <message>
-   <source>Cuts</source>
-   <translation>Schnitte</translation>
+   <source>Cutting moves</source>
+   <translation>Schnittbewegungen</translation>
   </message>
   <message>
    <source>Feed rate</source>
    <translation>Vorschub</translation>
   </message>
   <message>
-   <source>Feed rate of the cutting motion.</source>
-   <translation>Vorschub der schneidenden Bewegung.</translation>
+   <source>Feed rate of the cutting moves.</source>
+   <translation>Vorschub der Schnittbewegungen.</translation>
   </message>
   <message>
    <source>Folder</source>
@@ -2343,10 +2766,6 @@
   <message>
    <source>General</source>
    <translation>Allgemein</translation>
-  </message>
-  <message>
-   <source>Greatest height left between neighbouring passes.</source>
-   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
   </message>
   <message>
    <source>Links</source>
@@ -2361,6 +2780,10 @@
    <translation>Maschinen</translation>
   </message>
   <message>
+   <source>Maximum height left between neighbouring passes.</source>
+   <translation>Größte Höhe, die zwischen benachbarten Bahnen stehen bleibt.</translation>
+  </message>
+  <message>
    <source>New plans</source>
    <translation>Neue Pläne</translation>
   </message>
@@ -2373,12 +2796,12 @@
    <translation>Kurzform des Fräsers, etwa torus:12x1, ball:8, flat:20 oder tapered:6x3x4. Leer: einer, der zum Teil passt.</translation>
   </message>
   <message>
-   <source>Spindle</source>
-   <translation>Spindel</translation>
+   <source>Spindle speed</source>
+   <translation>Drehzahl</translation>
   </message>
   <message>
    <source>Spindle speed.</source>
-   <translation>Drehzahl der Spindel.</translation>
+   <translation>Spindeldrehzahl.</translation>
   </message>
   <message>
    <source>Threads</source>
@@ -2393,8 +2816,12 @@
    <translation>Werkzeug</translation>
   </message>
   <message>
-   <source>by the part</source>
-   <translation>nach dem Teil</translation>
+   <source>Toolpath colours</source>
+   <translation>Farben der Bahnen</translation>
+  </message>
+  <message>
+   <source>automatic (from the part)</source>
+   <translation>automatisch (nach dem Teil)</translation>
   </message>
  </context>
  <context>
@@ -2408,32 +2835,32 @@
    <translation>Operation</translation>
   </message>
   <message>
-   <source>Painted</source>
-   <translation>Gezeigt</translation>
-  </message>
-  <message>
    <source>Removes material along the passes and measures what is left.</source>
    <translation>Trägt Material entlang der Bahnen ab und misst, was bleibt.</translation>
+  </message>
+  <message>
+   <source>Show</source>
+   <translation>Anzeige</translation>
   </message>
   <message>
    <source>Stop</source>
    <translation>Stopp</translation>
   </message>
   <message>
-   <source>Stops the judge.</source>
-   <translation>Hält die Prüfung an.</translation>
+   <source>Stops verification.</source>
+   <translation>Stoppt die Prüfung.</translation>
   </message>
   <message>
    <source>Verify</source>
    <translation>Prüfen</translation>
   </message>
   <message>
-   <source>What the colours on the face show.</source>
-   <translation>Was die Farben auf der Fläche zeigen.</translation>
+   <source>What Verify measured, and what is allowed.</source>
+   <translation>Was die Prüfung gemessen hat, und was erlaubt ist.</translation>
   </message>
   <message>
-   <source>What the judge measured, and what is allowed.</source>
-   <translation>Was die Prüfung gemessen hat, und was erlaubt ist.</translation>
+   <source>What the colours on the face show.</source>
+   <translation>Was die Farben auf der Fläche zeigen.</translation>
   </message>
   <message>
    <source>Which operation is shown.</source>
@@ -2488,7 +2915,7 @@
   </message>
   <message>
    <source>Hyperbolic paraboloid along its rulings</source>
-   <translation>Hyperbolisches Paraboloid längs seiner Erzeugenden</translation>
+   <translation>Hyperbolisches Paraboloid entlang seiner Erzeugenden</translation>
   </message>
   <message>
    <source>Impeller with nine blades</source>
@@ -2508,7 +2935,7 @@
   </message>
   <message>
    <source>Skin of six faces</source>
-   <translation>Haut aus sechs Flächen</translation>
+   <translation>Flächenverband aus sechs Flächen</translation>
   </message>
   <message>
    <source>Strong waves</source>
@@ -2541,8 +2968,8 @@
    <translation>Maschine</translation>
   </message>
   <message>
-   <source>Picks a machine, shows where its rotary axes stand for each operation, and its index moves</source>
-   <translation>Wählt eine Maschine und zeigt, wo ihre Drehachsen bei jeder Operation stehen, und ihre Schwenkbewegungen</translation>
+   <source>Selects a machine and shows the positions of its rotary axes for each operation, and its index moves</source>
+   <translation>Wählt eine Maschine und zeigt die Stellungen ihrer Drehachsen bei jeder Operation und ihre Schwenkbewegungen</translation>
   </message>
  </context>
  <context>
@@ -2563,7 +2990,7 @@
    <translation>Teilflächen vereinen</translation>
   </message>
   <message>
-   <source>Puts the selected sub-surfaces of a face together and plans them again</source>
+   <source>Merges the selected sub-surfaces of a face and plans them again</source>
    <translation>Vereint die ausgewählten Teilflächen einer Fläche und plant sie neu</translation>
   </message>
  </context>
@@ -2603,12 +3030,12 @@
  <context>
   <name>ToolAxis_Split</name>
   <message>
-   <source>Cuts the selected sub-surface apart: along a wire or sketch that is selected with it, out of the face where that is closed, else in the middle</source>
-   <translation>Zerteilt die ausgewählte Teilfläche: entlang eines mit ausgewählten Linienzugs oder einer Skizze, aus der Fläche heraus, wo diese geschlossen sind, sonst in der Mitte</translation>
-  </message>
-  <message>
    <source>Split Sub-Surface</source>
    <translation>Teilfläche zerteilen</translation>
+  </message>
+  <message>
+   <source>Splits the selected sub-surface along a wire or sketch that is also selected; a closed one cuts a piece out; without one, in the middle</source>
+   <translation>Zerteilt die ausgewählte Teilfläche entlang eines mit ausgewählten Linienzugs oder einer Skizze; geschlossene schneiden ein Stück heraus; ohne solche in der Mitte</translation>
   </message>
  </context>
  <context>

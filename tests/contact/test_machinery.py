@@ -64,7 +64,7 @@ def test_the_angle_at_which_a_head_first_touches_the_table() -> None:
         assert (len(rows) > 0) == free
         if not free:
             depth = -expected(touch + 0.02)
-            assert why.startswith(f"the head meets the table by {depth:.1f} mm at C ")
+            assert why.startswith(f"the head collides with the table by {depth:.1f} mm at C ")
             assert f"B {degrees(touch + 0.02):.3f}"[:8] in why or f"B -{degrees(touch + 0.02):.3f}"[:8] in why
 
 

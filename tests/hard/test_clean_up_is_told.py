@@ -29,7 +29,7 @@ def test_verify_says_how_much_is_left_to_clean_up(tmp_path: Path, capsys: pytest
         stage.publish()
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) in (0, 1)
     said = capsys.readouterr().err
-    assert re.search(r"mm2, (\d+\.\d+) % of the area, lie in zones that the plan leaves to clean-up", said), said
+    assert re.search(r"mm2, (\d+\.\d+) % of the area, are rest material by the plan", said), said
     declared = float(re.search(r"mm2, (\d+\.\d+) % of", said)[1])
     assert declared == pytest.approx(100 * share, abs=2.0)
 
@@ -40,4 +40,4 @@ def test_nothing_is_said_of_what_is_not_left(tmp_path: Path, capsys: pytest.Capt
         write_plan(made, stage.folder)
         stage.publish()
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) == 0
-    assert "clean-up" not in capsys.readouterr().err
+    assert "rest material" not in capsys.readouterr().err

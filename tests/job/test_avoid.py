@@ -105,7 +105,7 @@ def test_passes_end_where_a_ball_would_come_nearer_than_its_clearance(beside_sea
     wide = np.sqrt(2 * BALL.radius * CLEAR)
     assert zone.avoided == ("2",) and wide < zone.area / 14 < 1.5 * wide
     (said,) = [why for why in op.orientation.reasons if "beside face 2" in why]
-    assert said == f"{zone.area:.2f} mm2 beside face 2, which is to be avoided, is left to clean-up"
+    assert said == f"{zone.area:.2f} mm2 beside face 2, which is to be avoided, is left as rest material"
     (open_,) = list_open_places(beside_seam)
     assert what_closes(open_, 4.0) == "nothing: it lies beside face 2, which is to be avoided"
 

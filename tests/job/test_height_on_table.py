@@ -24,7 +24,7 @@ def mounted(z: float, x: float = PLACE[0], machine: str = "bc-table-table") -> M
 
 @pytest.mark.parametrize("z", [-85.0, -30.0])
 def test_a_part_inside_the_table_is_raised_onto_it(z: float) -> None:
-    with pytest.raises(PartMisplaced, match="meets the table by"):
+    with pytest.raises(PartMisplaced, match="collides with the table by"):
         post_plan(PLAN, "linuxcnc", mounted(z))
     assert find_missing_height(PLAN, mounted(z)) == -z
     assert "program-linuxcnc.ngc" in post_plan(PLAN, "linuxcnc", mounted(0.0))
@@ -36,7 +36,7 @@ def test_a_tool_that_lies_low_needs_more_and_gets_no_step_too_much(axis: tuple[f
     for z in (0.0, -10.0):
         assert find_missing_height(low, mounted(z)) == height - z
     assert "program-linuxcnc.ngc" in post_plan(low, "linuxcnc", mounted(height))
-    with pytest.raises(PartMisplaced, match="meets the table by"):
+    with pytest.raises(PartMisplaced, match="collides with the table by"):
         post_plan(low, "linuxcnc", mounted(height - 5.0))
 
 
@@ -81,7 +81,7 @@ def test_a_moving_axis_is_raised_too() -> None:
     face = ta.Face.from_bspline(np.stack([x, y, 0.006 * (x - 20) ** 2 - 0.004 * (y - 12) ** 2], axis=-1))
     made = ta.plan(face, TOOL, 0.2, strategy="sturz", workers=1)
     low = mounted(-70.0)
-    with pytest.raises(PartMisplaced, match="meets the table by"):
+    with pytest.raises(PartMisplaced, match="collides with the table by"):
         post_plan(made, "fanuc", low)
     height = find_missing_height(made, low)
     assert height >= 70 and any(re.match("program-", name) for name in post_plan(made, "fanuc",

@@ -166,7 +166,7 @@ def test_passes_stay_out_of_the_held_side(clamped: Plan) -> None:
     assert op.face.evaluate(op.face.grid(30, 30)).point[:, 0].min() >= 8
     (zone,) = [zone for zone in op.zones if zone.at_wall]
     assert zone.avoided == (HELD_SIDE,)
-    assert f"{zone.area:.2f} mm2 beside the held side is left to clean-up" in op.orientation.reasons
+    assert f"{zone.area:.2f} mm2 beside the clamped side is left as rest material" in op.orientation.reasons
 
 
 def test_what_is_held_is_told_apart_from_what_is_open(clamped: Plan, tmp_path: Path) -> None:
@@ -191,7 +191,7 @@ def test_the_judge_passes_it_and_refuses_passes_that_do_not_know_of_it(clamped: 
         read = read_plan(written(replace(plain, inputs=replace(plain.inputs, held=side)), tmp_path / f"{k}"))
         found = verify_plan(read)
         assert not found.passed
-        assert any("cutter is" in why and "inside the held side, needed 0.1 mm" in why for why in found.reasons)
+        assert any("cutter is" in why and "inside the clamped side, needed 0.1 mm" in why for why in found.reasons)
 
 
 def test_no_axis_comes_from_the_held_side() -> None:
@@ -220,7 +220,7 @@ def test_a_rack_keeps_out_of_it_on_skins_too() -> None:
 
 
 def test_sub_surfaces_given_by_hand_do_not_go_with_it() -> None:
-    with pytest.raises(InvalidInput, match="a held side does not go with sub-surfaces given by hand"):
+    with pytest.raises(InvalidInput, match="a clamped side does not go with sub-surfaces given by hand"):
         made("x<8", division=[ta.SubSurface(1)])
 
 

@@ -40,7 +40,7 @@ def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) 
     assert gone.left and not gone.done and gone.orientation.axis is None
     assert gone.orientation.passes == 0 and gone.orientation.unreached == 1.0
     assert sum(zone.area for zone in gone.zones) == pytest.approx(op.face.area, rel=1e-12)
-    assert "92.0 % of it" in gone.orientation.reasons[0] and "clean-up as a whole" in gone.orientation.reasons[0]
+    assert "92.0 % of it" in gone.orientation.reasons[0] and "entirely as rest material" in gone.orientation.reasons[0]
     assert outcome_of([kept, gone]) == "complete"
     assert outcome_of([kept, replace(gone, zones=())]) == "incomplete"
 
@@ -48,7 +48,7 @@ def test_a_narrow_face_is_left_as_a_whole_above_the_threshold(small_plan: Plan) 
 def test_a_face_that_is_wider_than_the_cutter_keeps_its_operation(small_plan: Plan) -> None:
     (op,) = small_plan.operations
     assert describe_zones(replace(op, tool=SLIM), leaving(op, 0.97)).done
-    assert describe_zones(op, leaving(op, 0.97, at_wall=False)).done, "an undercut is no clean-up face"
+    assert describe_zones(op, leaving(op, 0.97, at_wall=False)).done, "an undercut is no rest material"
 
 
 def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
@@ -58,7 +58,7 @@ def test_an_undercut_is_pointed_out_in_mm_and_once(small_plan: Plan) -> None:
     (said,) = [why for why in made.orientation.reasons if why.startswith("undercut")]
     at = op.face.evaluate(zones[0].loops[0].mean(axis=0)[None]).point[0]
     assert f"{zones[0].area:.2f} mm2, around {place(at)}:" in said and not np.allclose(at, 0)
-    assert made.done and made.orientation.unreached == 0, "no clean-up: the judge will not overlook it"
+    assert made.done and made.orientation.unreached == 0, "no rest material: the judge will not overlook it"
 
 
 def test_zones_are_those_that_the_proof_found(small_plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -119,7 +119,7 @@ def test_a_fillet_tighter_than_the_corner_is_a_clean_up_face(footed: Plan, tmp_p
     again = read_plan(tmp_path / "plan")
     assert again.outcome == "complete" and again.operations[1].left
     assert main(["verify", str(tmp_path / "plan"), "--no-pictures"]) == 0
-    assert "clean-up" in capsys.readouterr().out
+    assert "rest material" in capsys.readouterr().out
     assert overview_picture(footed).axes
 
 

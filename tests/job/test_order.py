@@ -181,8 +181,8 @@ def test_an_operation_that_meets_something_at_all_angles_has_no_axis_any_more() 
                                                               PLACE)))
     assert not any(op.done for op in made.operations) and made.outcome == "incomplete"
     assert made.operations[0].orientation.reasons[0].startswith("infeasible: the ")
-    assert " meets " in made.operations[0].orientation.reasons[0]
-    with pytest.raises(ta.InvalidInput, match=r"op01-face1: the .* meets .*; move the part on the table"):
+    assert " collides with " in made.operations[0].orientation.reasons[0]
+    with pytest.raises(ta.InvalidInput, match=r"op01-face1: the .* collides with .*; move the part on the table"):
         post_plan(plan, "linuxcnc", replace(made.machine, tool_length=TOOL.gauge_length))
 
 
@@ -212,10 +212,10 @@ def test_what_is_in_the_way_on_every_order_is_told_and_not_posted() -> None:
     made = add_times(replace(plan, machine=Mounting(replace(machine, bodies=(*machine.bodies, roof)), PLACE)),
                      reorder=True)
     assert all(op.done for op in made.operations) and len(made.in_the_way) == 5 and made.outcome == "incomplete"
-    assert all("the spindle meets the roof by 10.0 mm at C" in why for why in made.in_the_way)
+    assert all("the spindle collides with the roof by 10.0 mm at C" in why for why in made.in_the_way)
     assert sum("before face" in why and "on the retract" in why for why in made.in_the_way) == 3
     assert "on the approach" in made.in_the_way[3] and made.in_the_way[4].startswith("after face")
-    with pytest.raises(ta.InvalidInput, match="the machine meets something between operations: before face"):
+    with pytest.raises(ta.InvalidInput, match="the machine collides between operations: before face"):
         post_plan(made, "linuxcnc", replace(made.machine, tool_length=TOOL.gauge_length))
 
 

@@ -308,7 +308,7 @@ def test_many_small_facets_are_left_to_clean_up() -> None:
     assert pattern is not None
     share = group_blade_faces(pattern, ta.Tool.torus(diameter=6, corner_radius=1), 0.1)
     assert share.left.keys() == {2, 3} and share.divided == () and share.refused == {}
-    assert "24 facets" in share.left[2] and "left to clean-up as a whole" in share.left[2]
+    assert "24 facets" in share.left[2] and "left entirely as rest material" in share.left[2]
     few = group_blade_faces(pattern, ta.Tool.torus(diameter=2, corner_radius=0.5), 0.1)
     assert few.left == {} and len(few.divided) == 2
 

@@ -108,7 +108,7 @@ def test_what_stays_open_is_listed_with_what_would_close_it(planned: Plan) -> No
     assert place.label == "1.2" and place.area == pytest.approx(account.open + account.unreachable, rel=0.2)
     assert place.unreachable == pytest.approx(account.unreachable)
     assert place.point[1] < 1.5 and place.radius == pytest.approx(125, rel=0.1), "along the wall at y = 0"
-    assert "another clamping" in what_closes(place, 1.5)
+    assert "another setup" in what_closes(place, 1.5)
     made = open_table(planned)
     assert made is not None and list(made.columns[0].cells) == ["1.2"] and "1 places" not in str(made.title)
 

@@ -237,7 +237,7 @@ def test_without_a_verdict_it_says_so_first(folder: Path) -> None:
 @pytest.mark.parametrize("outcome", ["incomplete", "cancelled"])
 def test_what_is_missing_comes_first(small_plan: Plan, tmp_path: Path, outcome: str) -> None:
     (op,) = small_plan.operations
-    why = "the holder meets <face> 7 & all is lost"
+    why = "the holder collides with <face> 7 & all is lost"
     lost = replace(op, number=2, path=None, frame=None,
                    orientation=replace(op.orientation, axis=None, outcome="infeasible", reasons=(why,), lobes=()))
     plan = replace(small_plan, operations=(op, lost), outcome=outcome)

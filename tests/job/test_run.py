@@ -212,7 +212,7 @@ def test_a_face_of_a_hundred_small_facets_is_left_in_one_sentence() -> None:
     made = ta.plan(facets, "ball:6", 0.1)
     assert made.outcome == "incomplete" and [op.face.label for op in made.operations] == ["1"]
     why, = made.operations[0].orientation.reasons
-    assert why.startswith("face 1 is left to clean-up as a whole: kinks cut its 10.5 mm2 into 20 facets")
+    assert why.startswith("face 1 is left entirely as rest material: kinks cut its 10.5 mm2 into 20 facets")
     assert made.operations[0].zones[0].area == pytest.approx(facets.area)
     assert len(smooth_pieces([facets], ta.Tool.ball(1))) == 20
 

@@ -160,7 +160,7 @@ def test_a_stop_keeps_the_blades_that_were_finished(first):
     assert found.outcome == "cancelled" and len(found.operations) == 3
 
 
-@pytest.mark.parametrize("stage", ["proof of turned operations", "clean-up zones"])
+@pytest.mark.parametrize("stage", ["proof of turned operations", "rest material"])
 def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
     """Found: what was finished was put together by code that hears the stop too, and was lost with it."""
     asked = []
@@ -172,7 +172,7 @@ def test_a_stop_keeps_the_blades_that_are_finished(first, stage, monkeypatch):
     pattern, _ = find_pattern(wheel("thick"))
     stop = Progress(_report, lambda: bool(asked))
     whole = turned.with_zones
-    if stage == "clean-up zones":
+    if stage == "rest material":
         def _zones(plan, op):
             asked.append(stage)
             return whole(plan, op)

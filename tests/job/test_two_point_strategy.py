@@ -49,7 +49,7 @@ def test_it_is_read_back(plan, tmp_path) -> None:
 def test_a_convex_face_is_said_to_have_one_contact() -> None:
     made = ta.plan(trough(hollow=False), "flat:8", 0.1, strategy="two-point", workers=1)
     assert made.outcome == "complete", made.operations[0].orientation.reasons
-    assert any(why.startswith("one contact: the surface is not hollow") and "100.0 %" in why
+    assert any(why.startswith("one contact: the surface is not concave") and "100.0 %" in why
                for why in made.operations[0].orientation.reasons)
 
 

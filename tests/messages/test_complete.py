@@ -46,10 +46,9 @@ NO_SENTENCES = {
     "refinement must end": "assertion of an algorithm",
     "defines entity #\f\f more than once: every number must stand for one entity; export the part again":
         "two entries, without and with further numbers",
-    "face \f, \f mm wide on the mean, \f as a whole: \f": "the entry has the words of LEFT_OVER",
     "\f % of the area lies at walls or in corners and \f": "the entry has the words of LEFT_OVER",
-    "\f mm2 beside the held side \f": "the entry has the words of LEFT_OVER",
-    "the \f \f at \f on \f, needed \f mm, \f": "two entries, that comes within and that meets",
+    "\f mm2 beside the clamped side \f": "the entry has the words of LEFT_OVER",
+    "the \f \f at \f on \f, needed \f mm, \f": "two entries, that comes within and that collides",
 }
 #: Words of two or more letters that make a text a sentence, where two of them stand apart.
 WORD = re.compile(r"(?<!\S)[(\"']?[A-Za-z]?[a-z]+[a-z'-]*[a-z][,.;:)\"']*(?!\S)")

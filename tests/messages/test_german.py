@@ -186,7 +186,7 @@ def test_reasons_of_the_judge(lowered):
     for height in (-0.1, 60.0):  # the cutter near it, and the tool in it
         side = HeldSide(np.array([0, 0, height]), np.array([0, 0, -1.0]))
         held = judge(replace(lowered, held=side), spacing=0.5).reasons
-        assert any("the held side, needed" in why for why in held), held
+        assert any("the clamped side, needed" in why for why in held), held
         all_german(held)
 
 
@@ -333,6 +333,6 @@ def test_lists_places_and_names():
         "Op1, Op2 und weitere: das Teil hat sich geändert; Werkzeug geändert")
     assert translate("face 3 (1 of 2): axes", "german") == "Fläche 3 (1 von 2): Achsen"
     said = translate("the holder collides with face 4 by 0.42 mm at (1.5, 0, -3)", "german", ",")
-    assert said == "der Halter stößt bei (1,5; 0; -3) um 0,42 mm gegen Fläche 4"
+    assert said == "Kollision: Halter und Fläche 4, 0,42 mm bei (1,5; 0; -3)"
     assert translate("the holder collides with face 4 by 0.42 mm", "german") == (
-        "der Halter stößt um 0.42 mm gegen Fläche 4")
+        "Kollision: Halter und Fläche 4, 0.42 mm")

@@ -171,7 +171,7 @@ def test_next_to_a_wall_a_clean_up_zone_stays_and_is_told(make):
     assert found.unreached == pytest.approx(sum(zone.area for zone in zones) / part.faces[0].area, abs=1e-12)
     assert found.unreached == pytest.approx(job.feasibility.unreached(found.axis), rel=0.1)
     assert found.clearance["cutter"] >= 0.1 - 0.006 and found.clearance["holder"] >= 1.0 - 0.006
-    assert (found.unreached > 0) == any("clean-up" in reason for reason in found.reasons)
+    assert (found.unreached > 0) == any("rest material" in reason for reason in found.reasons)
     wall = next(group for group in job.groups if group.role == OTHER)
     assert path.cl[:, 1].max() < wall.faces[0].box[1, 1]
     assert prove(path, HELD, job.groups).witness is None

@@ -43,7 +43,7 @@ def test_the_axis_that_lays_the_head_on_the_table_is_refused(slope: ta.Face) -> 
     side = (0.0, -sin(radians(74)), cos(radians(74)))
     free, met = (evaluate_axis(slope, TOOL, side, 0.2, mounting(*bodies)) for bodies in ((), (TABLE, HEAD)))
     assert free.axis is not None, free.reasons
-    assert met.axis is None and "the head meets the table by" in met.reasons[0]
+    assert met.axis is None and "the head collides with the table by" in met.reasons[0]
     assert " at C " in met.reasons[0] and "B " in met.reasons[0]
 
 
@@ -64,7 +64,7 @@ def test_where_every_axis_lays_the_head_on_the_table_the_reason_says_so(slope: t
     near = Cone(np.array([0.0, -1.0, 0.0]), radians(8))
     found = best_axis(slope, TOOL, 0.2, mounting(TABLE, HEAD), limits=near)
     assert found.axis is None
-    assert "the head meets the table by" in found.reasons[0] and "to reach the face" in found.reasons[0]
+    assert "the head collides with the table by" in found.reasons[0] and "to reach the face" in found.reasons[0]
 
 
 def test_bodies_forbid_nothing_that_they_do_not_touch(slope: ta.Face) -> None:

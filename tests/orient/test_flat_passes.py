@@ -70,7 +70,7 @@ def test_reasons_for_one_contact():
     ridge = postures(TwoPointInputs(trough(hollow=False), TOOL, H, "v"), along, 0.0, 1)
     assert ridge.reason[0] == CONVEX and ridge.contacts[0] == 1
     crosswise = postures(TwoPointInputs(trough(half=0.8), TOOL, H, "u", "one-point"), np.array([0.0]), 15.0, 1)
-    assert crosswise.reason[0] == CONVEX and REASONS[CONVEX].endswith("not hollow across the feed")
+    assert crosswise.reason[0] == CONVEX and REASONS[CONVEX].endswith("not concave across the feed")
     assert np.degrees(crosswise.stand.lean[0]) == pytest.approx(np.degrees(np.arcsin(10 / RHO)), abs=0.05)
 
 

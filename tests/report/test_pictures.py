@@ -171,7 +171,7 @@ def test_clean_up_zones_are_hatched_in_both_pictures() -> None:
             shown.append(float((np.abs(image - np.array(COLOUR)).max(axis=2) < 0.01).mean()))
             legend = made.axes[ax].get_legend()
             labels = [] if legend is None else [text.get_text() for text in legend.get_texts()]
-            assert ("left to clean-up" in labels) == (one is marked)
+            assert ("rest material" in labels) == (one is marked)
         assert shown[0] == 0 and 0.005 < shown[1] < 0.3
 
 

@@ -37,20 +37,20 @@ def test_a_plan_in_which_all_is_well_has_none() -> None:
 def test_the_gravest_come_first() -> None:
     found = warnings_of(plan(op(1), op(2, done=False, left=True, why="too tight"), op(3, done=False, why="a wall"),
                              outcome="incomplete", not_checked=("holder",),
-                             in_the_way=("the head meets the table",)), None)
+                             in_the_way=("the head collides with the table",)), None)
     assert [one.level for one in found] == sorted((one.level for one in found), key=["stop", "mind", "note"].index)
     texts = [one.text for one in found]
     assert texts[0] == "op03-face3 has no axis: a wall"
     assert any(text.startswith("not judged") for text in texts)
-    assert texts.index("not checked: holder") < texts.index("op02-face2 is left to a clean-up tool: too tight")
-    assert "between operations: the head meets the table" in texts
+    assert texts.index("not checked: holder") < texts.index("op02-face2 is left as rest material: too tight")
+    assert "between operations: the head collides with the table" in texts
 
 
 def test_turned_copies_count_with_their_original() -> None:
     fillets = [op(k, done=False, left=True, why="a tight fillet") for k in (2, 4, 6)]
     found = warnings_of(plan(op(1), op(3), op(5), *fillets, copies={3: 1, 5: 1, 4: 2, 6: 2}),
                         verdict(judged(1), judged(3), judged(5)))
-    assert [one.text for one in found] == ["op02-face2 and 2 turned copies are left to a clean-up tool: a tight fillet"]
+    assert [one.text for one in found] == ["op02-face2 and 2 turned copies are left as rest material: a tight fillet"]
 
 
 def test_a_copy_that_alone_has_no_axis_is_told() -> None:
@@ -74,4 +74,4 @@ def test_a_failed_verdict_and_one_that_leaves_out_an_operation_stop(missing: boo
 def test_one_zone_is_not_called_zones(count: int, words: str) -> None:
     zone = SimpleNamespace(area=2.0, elsewhere=0.0)
     found = warnings_of(plan(op(1, zones=(zone,) * count)), verdict(judged(1)))
-    assert [one.text for one in found] == [f"{words} to a clean-up tool"]
+    assert [one.text for one in found] == [f"{words} as rest material"]

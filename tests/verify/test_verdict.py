@@ -114,7 +114,7 @@ def test_a_zone_declared_too_small_does_not_hide_what_lies_beside_it(plane_passe
     assert not found.passed
     assert found.zones[0].low[1] == pytest.approx(9.9, abs=0.5)
     assert found.zones[0].high[1] < 12.0
-    assert "of the area that is not left to clean-up is within" in found.reasons[0]
+    assert "of the area that is not left as rest material is within" in found.reasons[0]
     good = WIDE.trimmed((np.array([[0, 0], [1, 0], [1, 0.48], [0, 0.48]]),))  # all of it is machined
     assert not judge(replace(bare, left=(good,)), spacing=0.5).passed
 

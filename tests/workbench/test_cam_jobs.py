@@ -204,7 +204,7 @@ def test_bad_operations_are_refused_in_a_sentence(document, parts):
     assert len(make_jobs(document, [nowhere, operation])) == 1, "those without an axis are left out"
     before = names(document)
     operation.Scallop = 0.2
-    with pytest.raises(InvalidInput, match=r"is stale \(scallop was changed\): recompute it"):
+    with pytest.raises(InvalidInput, match=r"is out of date \(scallop was changed\): recompute it"):
         make_jobs(document, operation)
     with pytest.raises(InvalidInput, match="none of Tool Axis"):
         make_jobs(document, thing)

@@ -93,7 +93,7 @@ def test_what_cannot_be_written_leaves_the_folder_as_it_was(made, tmp_path):
     with pytest.raises(InvalidInput, match="dialect 'basic' is unknown"):
         export(operations, folder, Wish("basic", MACHINE))
     operations[1].FeedRate = 5
-    with pytest.raises(InvalidInput, match="is stale"):
+    with pytest.raises(InvalidInput, match="is out of date"):
         export(operations, folder)
     assert files(folder) == before
     export(operations[0], folder)

@@ -85,7 +85,7 @@ def test_what_speaks_against_a_solution_is_said(mounted):
     assert machine_angles.ways_to_hold(near, AXES[0], TIPS)[0].reason.endswith("leaves its travel by 0.1 mm")
     deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
     way = machine_angles.ways_to_hold(deep, AXES[0], TIPS)[0]
-    assert "the spindle meets the table by" in way.reason and way.meeting == ("spindle", "table")
+    assert "the spindle collides with the table by" in way.reason and way.meeting == ("spindle", "table")
     assert machine_angles.ways_to_hold(machine_limits.mounting("machine:four-axis-a", TOOL), AXES[0], TIPS) == []
     rows = machine_angles.in_order(mounted, [(axis, TIPS) for axis in AXES])
     assert all(taken >= 0 for _, taken in rows)
@@ -223,7 +223,7 @@ def test_what_the_tool_meets_is_told_by_its_object(mounted, clamped, tip, member
         return
     assert (found.member, found.thing, found.body) == (member, thing, "") and (found.member, found.thing) == (
         passes.member, passes.thing)
-    assert found.text.startswith(f"the {member} meets face ") and f" of the {thing} by 1.0 mm" in found.text
+    assert found.text.startswith(f"the {member} collides with face ") and f" of the {thing} by 1.0 mm" in found.text
 
 
 def test_the_tool_may_go_along_the_border_of_a_side(document, mounted):
@@ -254,7 +254,7 @@ def test_each_operation_has_its_own_tool_in_the_spindle(mounted, clamped):
     assert not first[0][0].reason and not second[0][0].reason
     deep = machine_limits.mounting("machine:bc-table-table@0,0,-60", TOOL)
     short, far = machine_angles.in_order(deep, [(AXES[0], TIPS, tool.gauge_length) for tool in tools])
-    assert "the spindle meets the table" in short[0][0].reason and not far[0][0].reason
+    assert "the spindle collides with the table" in short[0][0].reason and not far[0][0].reason
 
 
 def test_what_meets_on_the_way_is_found_between_stations(mounted, clamped):

@@ -37,7 +37,7 @@ def test_the_holder_meets_a_post_where_it_comes_near(copies):
     one, = found.found
     assert found.checked == ("cutter", "shank", "holder"), "without its own, the shank is as thick as the cutter"
     assert x[one.first] == 3 and one.last == len(x) - 1
-    assert one.text.startswith("the holder meets face ") and one.text.endswith(" of the Post by 3.0 mm")
+    assert one.text.startswith("the holder collides with face ") and one.text.endswith(" of the Post by 3.0 mm")
     assert found.at(one.first) is one and found.at(one.first - 1) is None
 
 
@@ -54,7 +54,7 @@ def test_the_cutter_may_touch_what_it_cuts(copies):
     path = path_of([(3.0 * k - 15, -10, low) for k, low in enumerate(lows)])
     found = bumps(TOOL, path, copies, NO_PROGRESS)
     assert {k for one in found.found for k in range(one.first, one.last + 1)} == {2, 3, 4}
-    assert all("the cutter meets face" in one.text and "of the Block by" in one.text for one in found.found)
+    assert all("the cutter collides with face" in one.text and "of the Block by" in one.text for one in found.found)
     assert not bumps(TOOL, path_of([(-15, -10, 10), (15, -10, 10)]), copies[:1], NO_PROGRESS).found
 
 
@@ -64,7 +64,7 @@ def test_where_the_axis_moves_the_points_count(copies):
     axes = [(np.sin(a), 0, np.cos(a)) for a in np.linspace(-lean, lean, 9)]
     found = bumps(TOOL, path_of([(0, 0, 11)] * 9, axes), copies, NO_PROGRESS)
     assert found.at(8) is not None and found.at(0) is None
-    assert "the holder meets" in found.at(8).text and "of the Post" in found.at(8).text
+    assert "the holder collides with" in found.at(8).text and "of the Post" in found.at(8).text
 
 
 def test_looking_can_be_stopped(copies):

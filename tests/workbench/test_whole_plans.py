@@ -155,9 +155,9 @@ def test_faces_left_to_clean_up_are_told_apart_from_those_without_an_axis(divide
     third = replace(without, number=3)
     for operations, words, bad in (
             ((first, second), f"Every face has an axis. {figures(plan)} OK", False),
-            ((first, left), "1 of 2 faces have an axis, 1 are left to a clean-up tool. ", False),
+            ((first, left), "1 of 2 faces have an axis, 1 are left as rest material. ", False),
             ((first, without), "1 of 2 faces have an axis; the reasons", True),
-            ((first, left, third), "1 of 3 faces have an axis, 1 are left to a clean-up tool, 1 have none;", True)):
+            ((first, left, third), "1 of 3 faces have an axis, 1 are left as rest material, 1 have none;", True)):
         found = replace(plan, operations=operations)
         text, warns = outcome_sentence(found)
         assert text.startswith(words) and warns == bad

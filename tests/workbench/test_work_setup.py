@@ -97,7 +97,7 @@ def test_a_vertex_that_is_gone_is_refused(document, parts):
     inputs = parts.inputs_for((thing, parts.sculptured_name(thing)), origin=origin_from_vertex(thing, "Vertex1"))
     thing.Shape = parts.wavy(12.0).translated(Vector(0.5, 0, 0))
     document.recompute()
-    with pytest.raises(InvalidInput, match="the vertex that was picked as the origin is gone"):
+    with pytest.raises(InvalidInput, match="the vertex selected as the origin is gone"):
         setup_of(inputs)
     with pytest.raises(InvalidInput, match=r"Edge1 of Block is not a vertex"):
         origin_from_vertex(thing, "Edge1")
@@ -111,9 +111,9 @@ def test_a_part_that_left_its_stock_makes_it_stale(given, document, parts):
     assert not operation.Stale, list(operation.StaleReasons)
     thing.Placement.Base = Vector(0, 0, 5)
     document.recompute()
-    assert operation.StaleReasons == ["the part was moved or turned, and the limits of the axis, the held side or the "
-                                      "stock were not"]
-    with pytest.raises(InvalidInput, match="is stale"):
+    assert operation.StaleReasons == ["the part was moved or turned, and the limits of the axis, the clamped side or "
+                                      "the stock were not"]
+    with pytest.raises(InvalidInput, match="is out of date"):
         make_jobs(document, operation)
 
 
@@ -177,7 +177,7 @@ def test_they_go_into_the_folder_and_onto_the_setup_sheet(document, parts, tmp_p
     low, high = corners(thing)
     assert plan.blank is not None and np.allclose([plan.blank.low, plan.blank.high], [low, high], atol=1e-3)
     sheet = next((tmp_path / "out").glob("setup*.md")).read_text()
-    assert "Origin: a point picked on the part, at " in sheet and "\n\nStock: " in sheet
+    assert "Origin: a point selected on the part, at " in sheet and "\n\nStock: " in sheet
 
 
 def test_they_come_back_from_the_operation_and_stand_in_macros(document, parts):

@@ -112,7 +112,7 @@ def _add_face_options(sub: _Parser) -> None:
                      help="faces such as 3,5-8 that no tool may touch: not machined, and kept clear of as obstacles "
                           "are, whatever faces they join")
     sub.add_argument("--held", default="", metavar="SPEC",
-                     help="side that is held in the clamping, in coordinates of the part: z<12.5, x>-3, or "
+                     help="side of the part that is clamped, in coordinates of the part: z<12.5, x>-3, or "
                           "plane:x,y,z,nx,ny,nz (a point of its plane, a direction into it); no tool goes there, and "
                           "what lies in it is not machined")
 

@@ -21,7 +21,7 @@ from toolaxis.plan.plan import Plan, PlanInputs, outcome_of
 from toolaxis.plan.timing import MOTION_WARNINGS
 from toolaxis.plan.zone import AVOIDED
 from toolaxis.progress import Progress, TimeLimit
-from toolaxis.shape.half_space import HELD_SIDE
+from toolaxis.shape.half_space import CLAMPED_SIDE
 from toolaxis.shape.work_origin import format_margins, parse_margins
 from toolaxis.strategies.inputs import check_strategy
 from toolaxis.strategies.strategy import Asked
@@ -181,7 +181,7 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
         if op.left:
             say(f"toolaxis: {op.orientation.reasons[0]}")
         elif not op.done and outcome_of([op], made.blades) == "complete":
-            say(f"toolaxis: face {op.face.label}: left to clean-up: {op.orientation.reasons[0]}")
+            say(f"toolaxis: face {op.face.label}: left as rest material: {op.orientation.reasons[0]}")
         elif not op.done:
             outcome = () if op.failed else (f"outcome {op.orientation.outcome}",)
             for reason in (*outcome, *op.orientation.reasons):
@@ -212,16 +212,16 @@ def _of_failures(out: Path) -> None:
 
 
 def _say_left_over(op: Operation) -> None:
-    """Say what an operation leaves to a clean-up tool."""
+    """Say what an operation leaves as rest material."""
     found, zones = op.orientation, [zone for zone in op.zones if zone.at_wall]
     if found.unreached > 0:
         count = f", {len(zones)} {'zone' if len(zones) == 1 else 'zones'}" if zones else ""
         elsewhere = sum(zone.elsewhere for zone in zones)
         also = f"; {elsewhere:.1f} mm2 of that are machined by other operations" if elsewhere > 0.05 else ""
         say(f"toolaxis: face {op.face.label}: {100 * found.unreached:.1f} % of the area lies at walls or in corners "
-            f"and is left to clean-up ({found.unreached * op.face.area:.1f} mm2{count}){also}")
+            f"and is left as rest material ({found.unreached * op.face.area:.1f} mm2{count}){also}")
     for why in found.reasons:
-        if AVOIDED in why or f"beside the {HELD_SIDE}" in why:
+        if AVOIDED in why or f"beside the {CLAMPED_SIDE}" in why:
             say(f"toolaxis: face {op.face.label}: {why}")
         if why.startswith(("undercut", "one contact", "no contact", *MOTION_WARNINGS)):
             say(f"toolaxis: warning: face {op.face.label}: {why}")

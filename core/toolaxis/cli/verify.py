@@ -89,15 +89,15 @@ def _draw(plan: Plan, verdict: Verdict, folder: Path, progress: Progress, worker
 
 
 def set_aside(verdict: Verdict) -> list[str]:
-    """Where the plan leaves zones to a clean-up tool, and how much that is: no scallop height was asked for there.
+    """Where the plan leaves rest material, and how much that is: no scallop height was asked for there.
 
     Parameters
     ----------
     verdict : Verdict
     """
     some = [op for op in verdict.operations if op.declared > 0]
-    told = [f"{op.name}: {op.declared:.2f} mm2, {100 * op.declared / op.area:.2f} % of the area, lie in zones that the "
-            "plan leaves to clean-up: no scallop height was asked for there" for op in some[:_TOLD]]
+    told = [f"{op.name}: {op.declared:.2f} mm2, {100 * op.declared / op.area:.2f} % of the area, are rest "
+            "material by the plan: no scallop height was asked for there" for op in some[:_TOLD]]
     if len(some) > _TOLD:
         area = sum(op.declared for op in some[_TOLD:])
         told.append(f"the same is true of {len(some) - _TOLD} further operations, {area:.2f} mm2 in all")

@@ -126,7 +126,7 @@ def words(mounting: Mounting, rotary: ArrayLike, found: CollisionPoint, required
     """
     at = mounting.at(rotary)
     if found.distance < 0:
-        return f"the {found.one} meets the {found.other} by {in_tenths(-found.distance)} mm{at}"
+        return f"the {found.one} collides with the {found.other} by {in_tenths(-found.distance)} mm{at}"
     return (f"the {found.one} comes within {found.distance:.2f} mm of the {found.other}, less than the required "
             f"{required:g} mm,{at}")
 

@@ -4,7 +4,7 @@ Screening looks at a few contacts and may only err towards "free"; proving looks
 normals between them, and at last at every motion of the passes really made.
 
 A contact at which the cutter would come too near to a wall that is less than one cutter diameter away, or gouge a face
-that continues the machined one, is left to a clean-up tool; anything else that is in the way forbids the axis, but at
+that continues the machined one, is left as rest material; anything else that is in the way forbids the axis, but at
 few places that are given.
 """
 
@@ -181,7 +181,7 @@ class Feasibility:
 
     @property
     def walls(self) -> tuple[Face, ...]:
-        """For what contacts beside it may be left to a clean-up tool: walls and obstacles, then the neighbours."""
+        """For what contacts beside it may be left as rest material: walls and obstacles, then the neighbours."""
         others = tuple(face for group in self.groups if group.role == OTHER for face in group.faces)
         return others + self.neighbours
 
@@ -370,7 +370,7 @@ class Feasibility:
         return Violation(int(trouble.reason[i]), amount, label, trouble.point[i], uv[i], distance)
 
     def unreached(self, axis: ArrayLike) -> float:
-        """Share of the area that is left to a clean-up tool, from the dense contacts.
+        """Share of the area that is left as rest material, from the dense contacts.
 
         Parameters
         ----------

@@ -184,7 +184,7 @@ def _beside(tool: Tool, group: CheckSurfaces, moves: Array, at: tuple[DistanceBo
 
 
 def _worse(worst: Violations, found: DistanceBounds, which: tuple[CheckSurfaces, int], wall: Bools) -> Violations:
-    """Merge in what one group does; a contact left to a clean-up tool is not visited, whatever else is there."""
+    """Merge in what one group does; a contact left as rest material is not visited, whatever else is there."""
     group, number = which
     for c in range(3):
         amount = group.required[c] - found.lower[:, c]

@@ -276,10 +276,9 @@ class Mounting:
         best = int(np.argmax(apart.min(axis=1)))
         one, other = names[int(np.argmin(apart[best]))]
         least = float(apart[best].min())
-        how = f"comes within {least:.1f} mm of the {other}"
         if least < 0:
-            how = f"meets the {other} by {in_tenths(-least)} mm"
-        return f"the {one} {how}{self.at(rows[best])}"
+            return f"the {one} collides with the {other} by {in_tenths(-least)} mm{self.at(rows[best])}"
+        return f"the {one} comes within {least:.1f} mm of the {other}{self.at(rows[best])}"
 
     def at(self, rotary: ArrayLike) -> str:
         """Where the rotary axes stand, as messages write it: " at A -85 C 12"; empty without any.

@@ -44,7 +44,7 @@ class CostGrid:
         Passes for a unit of the step parameter with feed u and feed v; 0 off the face and at walls, `FORBIDDEN` where
         the axis may not be used.
     left : (k, nu + 1, nv + 1) array of bool
-        Whether the node lies at a wall and is left to a clean-up tool.
+        Whether the node lies at a wall and is left as rest material.
     lines : pair of (1 or k, nu, nv + 1) and (1 or k, nu + 1, nv) arrays
         What one pass costs between neighbouring nodes along u, with feed u, and along v; one row where all axes cost
         the same.

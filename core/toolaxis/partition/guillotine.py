@@ -15,7 +15,7 @@ Values = TypeVar("Values", Array, Index)
 Corners = tuple[int, int, int, int]
 #: Sums of rates above this hold a forbidden node.
 _TOO_MUCH = 1e9
-#: Cost, mm or s, below which a rectangle is left to a clean-up tool as a whole: it is no sub-surface.
+#: Cost, mm or s, below which a rectangle is left as rest material as a whole: it is no sub-surface.
 _NONE = 1e-6
 _CHUNK = 32
 
@@ -51,7 +51,7 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
     ends : float
         By how much a pass is dearer than its line on the face.
     extra : (k, nu, nv) array, optional
-        What each cell costs besides: what is left to a clean-up tool.
+        What each cell costs besides: what is left as rest material.
     """
     nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
     pairs_u, pairs_v = np.triu_indices(nu + 1, 1), np.triu_indices(nv + 1, 1)

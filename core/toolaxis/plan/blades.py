@@ -27,7 +27,7 @@ class PlannedBlade:
     area : float
         Area of those faces that are to be machined, mm^2.
     left : float
-        Area of these that is left to a clean-up tool, or for which there is no axis, mm^2.
+        Area of these that is left as rest material, or for which there is no axis, mm^2.
     """
 
     faces: dict[str, tuple[int, ...]]

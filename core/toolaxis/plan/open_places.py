@@ -133,13 +133,13 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
     if place.beneath:
         return f"face {place.label} without face {place.beneath}: it lies under that as their skin is seen"
     if HELD_SIDE in place.avoided:
-        return "another clamping: it lies beside the held side"
+        return "another setup: it lies beside the clamped side"
     if place.avoided:
         return f"nothing: it lies beside face {', '.join(place.avoided)}, {AVOIDED}"
     if place.radius < smallest:
         return f"a ball end of {2 * place.radius:.2g} mm or less"
     if place.unreachable >= _MOSTLY * place.area:
-        return f"{LONGER_TOOL}, or another clamping: no tool here reaches it with any axis"
+        return f"{LONGER_TOOL}, or another setup: no tool here reaches it with any axis"
     if place.limited:
         return "more work: raise --limit"
-    return f"{LONGER_TOOL}, or another clamping: no axis that was tried reaches enough of it"
+    return f"{LONGER_TOOL}, or another setup: no axis that was tried reaches enough of it"

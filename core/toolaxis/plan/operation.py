@@ -69,7 +69,7 @@ class Operation:
 
     @property
     def left(self) -> bool:
-        """Whether the whole sub-surface is left to a clean-up tool."""
+        """Whether the whole sub-surface is left as rest material."""
         return self.path is None and bool(self.zones)
 
     @property

@@ -75,7 +75,7 @@ class Orientation:
     lobes : tuple of Orientation
         The best axis of each other lobe of feasible axes, best first.
     unreached : float
-        Share of the face's area left to a clean-up tool, 0 to 1.
+        Share of the face's area left as rest material, 0 to 1.
     lead : float or None
         Where the axis moves: its constant angle from the normal towards growing `feed`, or the mean of its angles to
         the normal, rad; `axis` is the mean one then.  None for a fixed axis.
@@ -110,5 +110,5 @@ class Orientation:
 
     @property
     def ideal_of_cut(self) -> float:
-        """The ideal length without the share of the area that is left to a clean-up tool, mm."""
+        """The ideal length without the share of the area that is left as rest material, mm."""
         return self.ideal * (1 - self.unreached)

@@ -341,7 +341,7 @@ def outcome_of(operations: Sequence[Operation], blades: Blades | None = None) ->
     operations : sequence of Operation
     blades : Blades, optional
         Their fillets need no axis: roots are what a clean-up tool is for, and the plan says how much of them stays.
-        Nor do faces that are left to a clean-up tool as a whole.  Where the program failed, nothing is complete.
+        Nor do faces that are left as rest material as a whole.  Where the program failed, nothing is complete.
     """
     needed = [op for op in operations
               if op.failed or (not op.left and (blades is None or blades.side_of(op.face.number) != "fillet"))]

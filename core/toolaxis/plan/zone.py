@@ -22,7 +22,7 @@ class Zone:
     area : float
         mm^2
     at_wall : bool
-        Whether it is left to a clean-up tool: the tool may not stand there, for a wall or an obstacle, or no pass of it
+        Whether it is left as rest material: the tool may not stand there, for a wall or an obstacle, or no pass of it
         comes into a corner beside such a place; else it is an undercut at the border, so small that it may stay.
     elsewhere : float
         Area of it that other operations of the plan machine, mm^2.

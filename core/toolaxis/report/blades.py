@@ -1,4 +1,4 @@
-"""Sentences on a part with blades: how many, what was turned, how near the tool comes, what stays for clean-up."""
+"""Sentences on a part with blades: how many, what was turned, how near the tool comes, what stays as rest material."""
 
 from toolaxis.plan.blades import SIDES, Blades
 from toolaxis.plan.part_account import PartAccount
@@ -58,14 +58,14 @@ def _rooms(blades: Blades) -> list[str]:
 
 
 def _left_on_blades(plan: Plan, blades: Blades) -> list[str]:
-    """What stays for clean-up on every blade."""
+    """What stays as rest material on every blade."""
     lines = []
     shares = [(round(one.left, 1), round(one.area, 1)) for one in blades.blades]
     for left, area in sorted(set(shares)):
         alike = [k for k, share in enumerate(shares, 1) if share == (left, area)]
         if left > 0:
             whose = "each blade" if len(alike) == len(blades.blades) else "blade " + ", ".join(map(str, alike))
-            lines.append(f"on {whose} {left:.1f} of {area:.1f} mm2 ({100 * left / area:.1f} %) stay for clean-up: "
+            lines.append(f"on {whose} {left:.1f} of {area:.1f} mm2 ({100 * left / area:.1f} %) stay as rest material: "
                          f"{_by_side(plan, blades, alike[0])}")
     return lines
 

@@ -24,7 +24,7 @@ _COLUMNS: tuple[Column, ...] = (
     ("cutting\nlength mm", "right"), ("gouge\nmm", "right"), ("clearance mm\ncutter/shank/holder", "right"))
 _OPEN_COLUMNS: tuple[Column, ...] = (("sub-\nsurface", "right"), ("open\nmm2", "right"),
                                      ("proven out\nof reach mm2", "right"), ("about\nx y z", "left"),
-                                     ("least hollow\nradius mm", "right"), ("what would close it", "left"))
+                                     ("least concave\nradius mm", "right"), ("what would close it", "left"))
 #: Open places that are told one by one.
 _OPEN_ROWS = 20
 _BOUNDS = "gouge: upper bound; clearance: lower bound, looked at up to 20 mm; -: not checked"
@@ -78,7 +78,7 @@ def _clearances(found: Mapping[str, float]) -> str:
 def _operation_row(op: Operation, inputs: PlanInputs) -> list[str]:
     found = op.orientation
     if not op.done:
-        return [op.face.label, "left to clean-up" if op.left else found.outcome, *["-"] * 6]
+        return [op.face.label, "rest material" if op.left else found.outcome, *["-"] * 6]
     return [op.face.label, _axis(op), describe_feed(found), str(found.passes),
             number(found.average_strip_width, 3), number(found.length, 1), number(found.gouge, 4),
             _clearances(found.clearance)]
@@ -94,7 +94,7 @@ def plan_table(plan: Plan) -> Table:
     """
     blades = plan.blades
     rows = [[*_operation_row(op, plan.inputs), _over_ideal([op]), *_links(op, plan.inputs), _clean_up(op),
-             "clean-up" if op.left else op.orientation.outcome]
+             "rest material" if op.left else op.orientation.outcome]
             for op in plan.operations if blades is None or op.number not in blades.copies]
     if blades is not None:
         shown = [op for op in plan.operations if op.number not in blades.copies]
@@ -250,7 +250,7 @@ def _order(plan: Plan) -> str:
         return ""
     now, listed, least = plan.order.seconds, plan.order.listed, plan.order.bound
     saved = f"{listed - now:.1f} s less than as planned" if isfinite(listed) else (
-        "as planned the machine would meet something")
+        "as planned the machine would collide")
     proven = "no order takes less" if now <= least * (1 + 1e-9) else f"no order takes less than {least:.1f} s"
     return f"order: {now:.1f} s between operations, {saved}; {proven}"
 
@@ -262,7 +262,7 @@ def _angles(plan: Plan, op: Operation) -> str:
 
 
 def _clean_up(op: Operation) -> str:
-    """Share of the area that is left to a clean-up tool."""
+    """Share of the area that is left as rest material."""
     return number(100 * op.orientation.unreached, 1) if op.done or op.left else "-"
 
 
@@ -358,7 +358,7 @@ def options_table(options: Sequence[Option]) -> Table:
                                    ("reckoned\nlength mm", "right"),
                                    *([("reckoned\ntime", "right")] if timed else []),
                                    ("less than\nthe first %", "right"), ("", "left"))
-    return table("cutting, links and clean-up against the number of orientations", columns, rows)
+    return table("cutting, links and rest material against the number of orientations", columns, rows)
 
 
 def _measured(found: Mapping[str, Clearance | str]) -> str:
@@ -392,10 +392,10 @@ def verdict_table(plan: Plan, verdict: Verdict) -> Table:
     rows = [_verdict_row(op, plan.inputs, judged.get(op.name)) for op in plan.operations]
     for row, op in zip(rows, plan.operations, strict=True):
         if not op.done and outcome_of([op], plan.blades) == "complete":
-            row[-1] = "clean-up"
+            row[-1] = "rest material"
     columns = [*_COLUMNS, ("clean-\nup %", "right"), ("scallop\nleft mm", "right"), ("% within\n1.02 limit", "right"),
                ("verdict", "left")]
     aside = any(op.declared > 0 for op in verdict.operations)
     return table(f"{_titled(plan)}, scallop limit {plan.inputs.scallop:g} mm, machining tolerance "
                  f"{plan.inputs.tolerance.gouge:g} mm, measured by material removal", columns, rows,
-                 "scallop left and % within: of the area that is not left to clean-up" if aside else "")
+                 "scallop left and % within: of the area without rest material" if aside else "")

@@ -73,7 +73,7 @@ def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
         if outcome_of([op], plan.blades) == "incomplete":
             lost.append(Warning("stop", f"{name} {verb[0]} no axis: {why}"))
         else:
-            left.append(Warning("mind", f"{name} {verb[1]} left to a clean-up tool: {why}"))
+            left.append(Warning("mind", f"{name} {verb[1]} left as rest material: {why}"))
     return left, lost
 
 
@@ -105,5 +105,5 @@ def _of_clean_up(plan: Plan) -> list[Warning]:
     more = f", {elsewhere:.1f} mm² of it machined by other operations" if elsewhere > 0 else ""
     turned = " (turned copies not counted)" if copies else ""
     if len(zones) == 1:
-        return [Warning("mind", f"1 zone, {area:.1f} mm², is left to a clean-up tool{more}{turned}")]
-    return [Warning("mind", f"{len(zones)} zones, {area:.1f} mm², are left to a clean-up tool{more}{turned}")]
+        return [Warning("mind", f"1 zone, {area:.1f} mm², is left as rest material{more}{turned}")]
+    return [Warning("mind", f"{len(zones)} zones, {area:.1f} mm², are left as rest material{more}{turned}")]

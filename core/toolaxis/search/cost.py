@@ -231,7 +231,7 @@ class MachiningCost:
         return float(np.clip(little / value, *_SHARES))
 
     def charge(self, length: float, unreached: float) -> float:
-        """Factor on passes and length for what is left to a clean-up tool.
+        """Factor on passes and length for what is left as rest material.
 
         What stays is charged `CLEAN_UP` times its cutting length with a ball that fits into the corner: of the
         cutter's corner radius, or of a quarter of its radius if that is larger.

@@ -41,7 +41,7 @@ class AxisTable:
     amount : (n,) array
     unreached : (n,) array
     passes, length : (n, 2) array
-        For feed "u" and "v", what is left to a clean-up tool charged; as if the axis were free.
+        For feed "u" and "v", what is left as rest material charged; as if the axis were free.
     values : (n, 2) array
         What is to be least, for both feeds, charged, whether the axes are free or not; rounded.
     counts : int

@@ -60,7 +60,7 @@ def tight_fillet(face: Face, tool: Tool) -> str:
     bent = face.curvature(face.grid(12, 12)).k1
     if not len(bent) or (bent * tool.radius > 1).mean() <= _TIGHT:
         return ""
-    return f"a hollow fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {tool.radius:g} mm"
+    return f"a concave fillet of {1 / np.median(bent):.2f} mm radius, tighter than the cutter's {tool.radius:g} mm"
 
 
 def corner_depths(feasibility: Feasibility, points: Array, normals: Array) -> Array:
@@ -96,7 +96,7 @@ def corner_too_large(feasibility: Feasibility) -> str:
     -----
     Whatever the axis, the cutter contains the ball of the corner radius that touches the surface at the contact.  Where
     the search for the depth was given up, its bound says nothing and no proof is drawn from it.  Faces that continue
-    this one are left out: contacts beside them can be left to a clean-up tool.
+    this one are left out: contacts beside them can be left as rest material.
     """
     some, limit = feasibility.dense, feasibility.tolerance.gouge
     if not len(some.uv):

@@ -16,7 +16,7 @@ _REFUSED = 2
 def find_known_axis(job: FaceProblem, ledger: AxisTable) -> tuple[CheckedCandidate, str] | None:
     """The first of the axes from which a search begins beside which no better one is worth a search.
 
-    That is where the cut is short, what is left to a clean-up tool charged; and with a ball end where it reaches the
+    That is where the cut is short, what is left as rest material charged; and with a ball end where it reaches the
     whole face, as its strips are as wide under all such axes.
 
     Parameters

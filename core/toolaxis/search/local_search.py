@@ -45,7 +45,7 @@ class CountedAxis:
     passes, length : float
         Exact count and cutting length, mm, over the whole face.
     unreached : float
-        Share of the area left to a clean-up tool, from screening.
+        Share of the area left as rest material, from screening.
     """
 
     axis: Array

@@ -37,7 +37,7 @@ _FOR = ("", "by the limits", "as too far from a normal", "as too near to a norma
 _PASSED = {LIMITS: "", BACK: " inside the limits", WANDERS: " that see all of the face",
            GOUGE: " that limits and normals allow"}
 #: How sentences end, or begin, that tell what an operation leaves.
-LEFT_OVER, UNDERCUT = "is left to clean-up", "undercut"
+LEFT_OVER, UNDERCUT = "is left as rest material", "undercut"
 
 #: What is said of passes over a skin between which too much stays, as closely as they may be laid.
 STAYS_BETWEEN = "more stays higher than the scallop limit between its passes than may, as closely as they may be laid"
@@ -73,7 +73,7 @@ def left_reasons(zones: Sequence[Zone], face: Face) -> tuple[str, ...]:
     for label in dict.fromkeys(label for zone in zones for label in zone.avoided):
         area = sum(zone.area for zone in zones if label in zone.avoided)
         if label == HELD_SIDE:
-            words.append(f"{area:.2f} mm2 beside the held side {LEFT_OVER}")
+            words.append(f"{area:.2f} mm2 beside the clamped side {LEFT_OVER}")
         else:
             words.append(f"{area:.2f} mm2 beside face {label}, {AVOIDED}, {LEFT_OVER}")
     if any(not zone.at_wall for zone in zones):
@@ -186,7 +186,7 @@ def _collision(found: Violation, feasibility: Feasibility) -> str:
     name, needed = _COMPONENTS[found.reason - CUTTER], _clearances(feasibility.tolerance)[found.reason - CUTTER]
     which = f"face {found.label}" if found.label else "what stands around"
     if found.label == HELD_SIDE:
-        which = "the held side"
+        which = "the clamped side"
     left = _left_on(found, feasibility)
     if left > 0:
         needed += left

@@ -13,8 +13,8 @@ from toolaxis.shape.face import Face
 
 Array = NDArray[np.float64]
 
-#: What messages call the plane in which the held side ends.
-HELD_SIDE = "held side"
+#: What plans call the plane in which the clamped side ends, and what messages call that side.
+HELD_SIDE, CLAMPED_SIDE = "held side", "clamped side"
 #: How far the plane reaches beside the part, in diagonals of it, and what is added for the length of tools, mm: a tool
 #: that touches the part crosses the plane inside of that before any of it is in the held side.
 _DIAGONALS, _LENGTH = 2.0, 500.0
@@ -104,4 +104,4 @@ def parse_half_space(text: str) -> HalfSpace:
                 return HalfSpace(values[:3], unit(as_rows(values[3:], 3, "direction")[0]))
     except ValueError:
         pass
-    raise InvalidInput(f"held side {text!r} is not understood: {_FORMS}")
+    raise InvalidInput(f"{CLAMPED_SIDE} {text!r} is not understood: {_FORMS}")

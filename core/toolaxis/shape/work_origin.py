@@ -208,7 +208,7 @@ def describe_origin(text: str) -> str:
         return ""
     body, place = found
     if not isinstance(place, str):
-        return "a point picked on the part"
+        return "a point selected on the part"
     level, _, corner = place.partition("-")
     if level == "middle":
         return f"middle of {BODIES[body]}"

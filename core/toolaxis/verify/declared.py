@@ -1,4 +1,4 @@
-"""What a plan declares as left to a clean-up tool: the judge asks for nothing there, and says how much it is."""
+"""What a plan declares as left as rest material: the judge asks for nothing there, and says how much it is."""
 
 from collections.abc import Sequence
 

@@ -66,6 +66,6 @@ def meeting_reasons(task: VerificationTask, name: str, room: Clearance) -> list[
         return []
     other = room.face if room.face.startswith("face ") else f"the {room.face}"
     met = f"comes within {room.distance:.2f} mm of {other}" if room.distance >= 0 else \
-        f"meets {other} by {-room.distance:.2f} mm"
+        f"collides with {other} by {-room.distance:.2f} mm"
     when = f"on the {motion_of(task, room.motion)}" if name == "machine" else "on the index move before it"
     return [f"the {room.component} {met} at {spot(room.point)} on {task.machine.name}, needed {need} mm, {when}"]

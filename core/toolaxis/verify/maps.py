@@ -89,7 +89,7 @@ class SurfaceMap:
     worst_scallop, worst_gouge : MapPoint or None
         The worst found by looking more closely around the worst rays; None without a finite height or without a gouge.
     declared : (m,) array of bool
-        Whether the ray stands in a zone that is declared as left to a clean-up tool: no height is asked for there.
+        Whether the ray stands in a zone that is declared as left as rest material: no height is asked for there.
     """
 
     face: Face

@@ -117,7 +117,7 @@ class VerificationTask:
             raise InvalidInput(f"stock of operation {self.name} is {self.stock} mm: it must be finite and zero or more")
         strange = [zone for zone in self.left if all(zone.surface is not face.surface for face in self.targets)]
         if strange:
-            raise InvalidInput(f"operation {self.name} leaves a zone of face {strange[0].label} to clean-up, which it "
+            raise InvalidInput(f"operation {self.name} leaves rest material on face {strange[0].label}, which it "
                                "does not machine: give pieces of its targets")
         if not self.targets:
             raise InvalidInput(f"operation {self.name} machines no face: give at least one target")

@@ -65,7 +65,7 @@ class OperationVerdict:
     share_within : float
         Share of the area, declared zones aside, left no higher than `FACTOR` times the limit, 0 to 1.
     declared : float
-        Area of the zones that the plan declares as left to a clean-up tool, with the strip around them, mm^2: no height
+        Area of the zones that the plan declares as left as rest material, with the strip around them, mm^2: no height
         is asked for there.
     gouge_max, gouge_allowed : float
         mm; the greatest is no more than the depth to which gouges are followed.
@@ -467,7 +467,7 @@ def _axis_text(axis: Array) -> str:
 def _scallop_reasons(task: VerificationTask, share: float, zones: tuple[MapZone, ...], area: float) -> list[str]:
     if share >= SHARE:
         return []
-    aside = " that is not left to clean-up" if task.left else ""
+    aside = " that is not left as rest material" if task.left else ""
     text = (f"{100 * share:.2f} % of the area{aside} is within {FACTOR} times the scallop limit {task.scallop} mm, "
             f"{100 * SHARE:.2f} % must be")
     if zones:
@@ -520,7 +520,7 @@ def _reasons_of_held_side(task: VerificationTask) -> list[str]:
         if found.distance < need:
             verb = f"is {found.distance:.4f} mm from" if found.distance >= 0 else (
                 f"is {-found.distance:.4f} mm inside")
-            reasons.append(f"{name} {verb} the held side, needed {need} mm, on the {motion_of(task, found.motion)}")
+            reasons.append(f"{name} {verb} the clamped side, needed {need} mm, on the {motion_of(task, found.motion)}")
     return reasons
 
 

@@ -28,7 +28,7 @@ def test_a_moving_axis_is_chosen_refused_computed_and_drawn(desk, wavy, tmp_path
     desk.type(form.scallop, "0.3 mm")
     form.tabs.setCurrentWidget(form.advancedTab)
     assert not form.roughness.isVisible() and form.method.isEnabled() and form.passes.isEnabled()
-    form.method.setCurrentIndex(form.method.findText("greatest jerk along passes"))
+    form.method.setCurrentIndex(form.method.findText("highest axis jerk along passes"))
     form.passes.setCurrentIndex(form.passes.findText("in parallel planes"))
     assert not form.compute.isEnabled() and "choose a machine among the limits" in form.message.text()
     desk.shot("68-method-refused")
@@ -53,7 +53,7 @@ def test_a_moving_axis_is_chosen_refused_computed_and_drawn(desk, wavy, tmp_path
     assert "Every face has an axis" in form.message.text() and names(document) == before
     assert not form.mapPlace.isVisible() and not form.lockAxis.isVisible() and form.slide.isVisible()
     rows = [form.results.model().headerData(k, desk.qt.Qt.Vertical) for k in range(form.results.rowCount())]
-    assert "Lean from the normal, mean" in rows
+    assert "Mean lean" in rows
     desk.shot("70-moving-axis")
     window = pictures(desk, form.pictures)
     assert [desk.text(window.list, k) for k in range(window.list.count())] == ["Passes and tool, op01-face" + face[4:]]

@@ -55,7 +55,7 @@ def test_a_stale_operation_is_refused_where_the_user_looks(desk, operation):
     operation.Document.recompute()
     before = len(operation.Document.Objects)
     text = desk.dialog_text(lambda: desk.gui.runCommand("ToolAxis_MakeJobs"))
-    assert "is stale" in text and "recompute it" in text
+    assert "is out of date" in text and "recompute it" in text
     assert len(operation.Document.Objects) == before
 
 
@@ -118,7 +118,7 @@ def test_what_cannot_be_written_is_told(desk, operation, tmp_path):
     assert "leave its travel" in form.message.text() and not (tmp_path / "plan").exists()
     operation.Scallop = 0.7
     desk.press(form.write)
-    assert "is stale" in form.message.text()
+    assert "is out of date" in form.message.text()
     operation.Document.removeObject(operation.Name)
     desk.pump(0.1)
     assert not form.write.isEnabled()
@@ -137,7 +137,8 @@ def test_a_part_inside_the_table_is_raised_by_a_click_and_the_program_is_written
     form = export_panel(desk)
     ready_for_linuxcnc(desk, form, tmp_path / "plan", -85)
     written(desk, form)
-    assert "the cutter meets the " in form.message.text() and "move the part on the table" in form.message.text()
+    assert "the cutter collides with the " in form.message.text()
+    assert "move the part on the table" in form.message.text()
     assert form.raisePart.isVisible() and not (tmp_path / "plan").exists()
     assert form.raisePart.text() == "Raise the part by 85 mm", form.raisePart.text()
     desk.shot("81-export-raise")
@@ -301,7 +302,7 @@ def test_what_cannot_be_held_is_told(desk, leaning):
 def test_bodies_that_meet_are_red(desk, leaning):
     """The part stands so deep in the table that the spindle meets it."""
     form = machine_panel(desk, "bc-table-table", (0, 0, -85))
-    assert "the spindle meets the table by" in desk.text(form.angles, 0, 0), desk.text(form.angles, 0, 0)
+    assert "the spindle collides with the table by" in desk.text(form.angles, 0, 0), desk.text(form.angles, 0, 0)
     form.angles.cellClicked.emit(0, 0)
     desk.pump(0.2)
     assert "Collision: spindle, table; " in form.pointer.text(), form.pointer.text()
@@ -319,7 +320,7 @@ def test_a_clamp_that_the_holder_meets_is_red(desk, leaning, tmp_path):
         if thing.TypeId.endswith("CoordinateSystem") or thing.TypeId == "Path::Feature":
             thing.ViewObject.Visibility = False
     form = machine_panel(desk, "bc-table-table", (0, 0, 20))
-    desk.wait(lambda: "meets face" in form.message.text(), "collisions are looked for")
+    desk.wait(lambda: "collides with face" in form.message.text(), "collisions are looked for")
     assert form.message.text().startswith(leaning[0].Label) and "of Clamp by" in form.message.text()
     assert "of Clamp by" in desk.text(form.angles, 0, 0) + desk.text(form.angles, 0, 1)
     assert "of Clamp by" in form.pointer.text(), form.pointer.text()

@@ -112,12 +112,12 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
         return form.operation.currentText(), view.map.picture, form.cost.text()
 
     view.show_growing(first, faces[2], titles)
-    assert shown() == ("Face 2", first, "Face 2: the axes looked at so far")
+    assert shown() == ("Face 2", first, "Face 2: the axes tested so far")
     assert not form.operation.isHidden() and form.operation.itemText(2) == "Face 7: not begun"
     view.show_growing(second, faces[5], titles)
-    assert shown() == ("Face 5", second, "Face 5: the axes looked at so far"), "follows what is computed"
+    assert shown() == ("Face 5", second, "Face 5: the axes tested so far"), "follows what is computed"
     form.operation.setCurrentIndex(2)
-    assert shown() == ("Face 7: not begun", None, "Face 7: no axis looked at yet")
+    assert shown() == ("Face 7: not begun", None, "Face 7: no axis tested yet")
     form.operation.setCurrentIndex(0)
     assert shown()[1] is first
     view.show_growing(third, faces[5], titles)
@@ -125,7 +125,7 @@ def test_the_maps_of_several_faces_grow_and_one_stays_chosen(desk):
     form.operation.setCurrentIndex(1)
     assert shown()[1] is third
     view.show_growing(second, faces[7], titles)
-    assert shown() == ("Face 7", second, "Face 7: the axes looked at so far")
+    assert shown() == ("Face 7", second, "Face 7: the axes tested so far")
     view.clear()
     assert view.map.picture is None and form.operation.isHidden()
 
@@ -135,7 +135,7 @@ def test_pointer_and_click_on_the_map(desk, form, remembered):
     chart = form.findChild(desk.widgets.QWidget, "axisMap")
     centre, radius = chart.disc()
     desk.hover(chart, spot(chart, free=False))
-    assert "forbidden" in form.pointer.text()
+    assert "not possible" in form.pointer.text()
     passes, chosen = desk.text(form.results, 1), chart.position_of(chart.picture.marks["chosen"])
     picture = chart.picture
     free = (picture.reason == 0) & (picture.axes @ picture.pole > 0.1)
@@ -143,7 +143,7 @@ def test_pointer_and_click_on_the_map(desk, form, remembered):
     desk.hover(chart, max(places, key=lambda at: abs(at.x() - chosen.x()) + abs(at.y() - chosen.y())))
     assert form.pointer.text().startswith("estimate: strip width ")
     desk.hover(chart, chosen)
-    assert form.pointer.text().startswith("chosen axis: ") and f", {passes} passes as made" in form.pointer.text()
+    assert form.pointer.text().startswith("chosen axis: ") and f", {passes} passes computed" in form.pointer.text()
     assert f"passes: {passes}," in form.message.text(), "one number for one thing"
     assert not form.lock.isEnabled()
     desk.click(chart, centre + desk.qt.QPointF(0.35 * radius, 0.2 * radius))
@@ -220,7 +220,7 @@ def test_limits_that_leave_no_axis(desk, form, remembered):
     desk.computed(form)
     assert "0 of 1 faces" in form.message.text() and not desk.standard_button("Ok").isEnabled()
     desk.shot("10-no-axis")
-    assert form.remedy1.isVisible() and form.remedy1.text() == "Without limits" and not form.remedy2.isVisible()
+    assert form.remedy1.isVisible() and form.remedy1.text() == "Remove axis limits" and not form.remedy2.isVisible()
     desk.type(form.cone, "9 deg")
     assert not form.remedy1.isVisible(), "it was offered for other inputs"
     desk.type(form.cone, "10 deg")
@@ -272,7 +272,7 @@ def test_passes_are_drawn_beside_an_operation_without_an_axis(desk, form, rememb
     assert "1 of 2 faces" in form.message.text() and form.operation.currentText().endswith("no axis")
     desk.wait(lambda: not preview._left, "all is drawn")
     assert preview.root is None and preview._others.getNumChildren() == 2, "the passes of the other"
-    assert "reasons stand below" in form.findChild(desk.widgets.QWidget, "axisMap").reason
+    assert "reasons are listed below" in form.findChild(desk.widgets.QWidget, "axisMap").reason
     desk.shot("13-one-of-two")
 
 

@@ -132,7 +132,7 @@ def test_the_panel_speaks_german(german, wavy):
     part, face = wavy
     form = german.start(part, face)
     assert form.compute.text() == "Berechnen" and form.scallopLabel.text() == "Rillenhöhe"
-    assert form.message.text().startswith("Berechnen findet die Achsen")
+    assert form.message.text().startswith("Auf Berechnen drücken, um die Achsen zu suchen")
     menus = [action.text().replace("&", "") for menu in german.children(german.widgets.QMenu, german.window.menuBar())
              for action in menu.actions()]
     assert "CAM-Aufträge anlegen" in menus and "Beispiele" in menus
@@ -160,6 +160,6 @@ def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
     reasons = form.reasons.text().split("\n")
     assert reasons[0].startswith("Unmöglich") and " Achsen " in reasons[0], reasons
     assert "Achsen geprüft: " in reasons[-1] and "außerhalb der Grenzen" in reasons[-1], reasons
-    assert form.remedy1.isVisible() and form.remedy1.text() == "Ohne Grenzen", form.remedy1.text()
+    assert form.remedy1.isVisible() and form.remedy1.text() == "Grenzen der Achse aufheben", form.remedy1.text()
     german.down(form.reasons)
     german.shot("96-german-reasons")

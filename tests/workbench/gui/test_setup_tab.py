@@ -162,5 +162,5 @@ def test_in_german_and_a_small_window(german, wavy):
     desk.shot("setup-german")
     assert form.tabs.tabText(1) == "Aufspannung" and form.stockSize.text().startswith("Rohteil: ")
     choose(desk, form.origin, 3)
-    assert "Punkt des Teils auswählen" in form.message.text()
+    assert "Eckpunkt des Teils auswählen" in form.message.text()
     desk.window.resize(usual)

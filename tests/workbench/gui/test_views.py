@@ -54,10 +54,10 @@ def test_an_operation_looks_stale_when_it_is(desk, opened):
     operation.Scallop = 0.2
     opened.recompute()
     assert operation.Stale and operation.ViewObject.Proxy.getIcon() != fresh
-    assert operation.Label == f"{label} (stale)"
+    assert operation.Label == f"{label} (out of date)"
     desk.shot("81-stale-in-the-tree")
     operation.Label = "Roof"
-    assert operation.Label == "Roof (stale)", "what the user calls it is kept, and that it is stale is still told"
+    assert operation.Label == "Roof (out of date)", "what the user calls it is kept, and that it is stale is still told"
     operation.Scallop = scallop
     opened.recompute()
     assert not operation.Stale and operation.Label == "Roof"
@@ -71,24 +71,24 @@ def test_the_label_of_what_is_stale_survives_saving_undo_and_another_language(de
     operation.Scallop = 0.2
     document.recompute()
     document.commitTransaction()
-    assert operation.Label == f"{label} (stale)" and plain_label(operation) == label
+    assert operation.Label == f"{label} (out of date)" and plain_label(operation) == label
     document.undo()
     document.recompute()
     assert not operation.Stale and operation.Label == label
     document.redo()
     document.recompute()
-    assert operation.Stale and operation.Label == f"{label} (stale)"
+    assert operation.Stale and operation.Label == f"{label} (out of date)"
     document.saveAs(str(tmp_path / "Stale.FCStd"))
     name = operation.Name
     FreeCAD.closeDocument(document.Name)
     again = FreeCAD.openDocument(str(tmp_path / "Stale.FCStd")).getObject(name)
     desk.pump(0.3)
-    assert again.Label == f"{label} (stale)"
+    assert again.Label == f"{label} (out of date)"
     desk.gui.setLocale("de")
     again.Tool = "ball:3"
     again.Document.recompute()
     again.Label = label
-    assert again.Label == f"{label} (überholt)"
+    assert again.Label == f"{label} (veraltet)"
     desk.gui.setLocale("en")
 
 
@@ -101,11 +101,11 @@ def test_the_menu_of_what_is_stale_computes_it_again(desk, operation, remembered
     operation.Document.recompute()
     view.Proxy.setupContextMenu(view, menu)
     action, = menu.actions()
-    assert action.text() == "Compute again"
+    assert action.text() == "Recompute"
     action.trigger()
     desk.wait(lambda: desk.form("ToolAxisPlan") is not None, "the panel opens")
     form = desk.form("ToolAxisPlan")
     desk.wait(lambda: form.compute.isEnabled() and not form.stop.isEnabled(), "the computation ends")
     desk.press(desk.standard_button("Ok"))
     desk.wait(lambda: desk.form("ToolAxisPlan") is None, "the panel closes")
-    assert not operation.Stale and "(stale)" not in operation.Label
+    assert not operation.Stale and "(out of date)" not in operation.Label

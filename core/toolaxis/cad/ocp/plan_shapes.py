@@ -118,7 +118,7 @@ def piece_of(plan: Plan, operation: str | int) -> OperationShapes:
                            f"{', ...' if len(plan.operations) > 4 else ''})")
     if not found[0].done:
         raise InvalidInput(f"operation {found[0].name} has no axis and no work coordinate system: "
-                           f"{'; '.join(found[0].operation.orientation.reasons) or 'it was left to a clean-up tool'}")
+                           f"{'; '.join(found[0].operation.orientation.reasons) or 'it was left as rest material'}")
     return found[0]
 
 

@@ -68,7 +68,7 @@ def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, option
             why = stood.orientation.reasons[0].removeprefix("infeasible: ")
             raise PartMisplaced(f"{op.name}: {why}; move the part on the table, or plan for this machine")
     if arranged_for.in_the_way:
-        raise PartMisplaced(f"the machine meets something between operations: {arranged_for.in_the_way[0]}; move the "
+        raise PartMisplaced(f"the machine collides between operations: {arranged_for.in_the_way[0]}; move the "
                             "part on the table, or plan again")
     angles = {op.number: op.rotary for op in arranged_for.operations if op.rotary}
     if moves(plan):

@@ -266,7 +266,7 @@ def _turn_operation(op: Operation, piece: Face, matrix: Array, swapped: bool) ->
     axis = turn @ found.axis
     axis /= np.linalg.norm(axis)
     feed = found.feed if not swapped else "v" if found.feed == "u" else "u"
-    left = tuple(why for why in found.reasons if why.endswith("left to clean-up"))
+    left = tuple(why for why in found.reasons if why.endswith("left as rest material"))
     return Operation(op.number, piece, op.tool, replace(found, axis=axis, feed=feed, map=None, lobes=(), zones=(),
                                                evaluations=1, reasons=(f"turned copy of {op.name}", *left)),
                      turn_path(path, matrix, axis))

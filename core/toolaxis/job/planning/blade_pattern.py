@@ -303,5 +303,5 @@ def group_blade_faces(pattern: Pattern, tool: Tool, clearance: float) -> BladeFa
 def _tight(face: Face, side: str, tool: Tool) -> str:
     """Why a fillet is left to clean-up: it is tighter than the cutter; empty where not."""
     tight = tight_fillet(face, tool) if side == "fillet" else ""
-    return tight and (f"face {face.number} is left to clean-up as a whole: {tight}; a ball end no larger than that "
+    return tight and (f"face {face.number} is left entirely as rest material: {tight}; a ball end no larger than that "
                       "reaches it")

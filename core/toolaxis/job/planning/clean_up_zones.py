@@ -18,7 +18,7 @@ from toolaxis.plan.plan import Plan, outcome_of
 from toolaxis.plan.zone import Zone
 from toolaxis.progress import NO_PROGRESS, Progress
 from toolaxis.search.infeasibility import corner_too_large, tight_fillet
-from toolaxis.search.messages import LEFT_OVER, left_reasons, tells_of_left
+from toolaxis.search.messages import left_reasons, tells_of_left
 from toolaxis.shape.measure import mean_width
 from toolaxis.strategies.registry import strategy_of
 
@@ -48,7 +48,7 @@ def add_clean_up_zones(plan: Plan, workers: int = 1, progress: Progress = NO_PRO
     """
     if plan.outcome == "cancelled":
         return plan
-    stage = progress.within("clean-up zones")
+    stage = progress.within("rest material")
     plan = _without_fillets(plan, stage)
     asked = [op for op in plan.operations if op.done and _can_be_outlined(plan, op)]
     while asked:
@@ -181,8 +181,9 @@ def describe_zones(op: Operation, zones: tuple[Zone, ...]) -> Operation:
 
 
 def _leave_whole(op: Operation, why: str) -> Operation:
-    """A sub-surface that is left to a clean-up tool as a whole."""
-    reason = f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, {LEFT_OVER} as a whole: {why}"
+    """A sub-surface that is left as rest material as a whole."""
+    reason = (f"face {op.face.label}, {mean_width(op.face):.2f} mm wide on the mean, is left entirely as rest "
+              f"material: {why}")
     none = Orientation(None, op.orientation.feed, reasons=(reason, *op.orientation.reasons), unreached=1.0,
                        evaluations=op.orientation.evaluations, map=op.orientation.map, lobes=op.orientation.lobes)
     return Operation(op.number, op.face, op.tool, none, zones=(Zone(op.face.outline, op.face.area),))

@@ -25,7 +25,7 @@ def loses_area(operations: Sequence[Operation], area: float) -> bool:
 
 
 def area_machined(operations: Sequence[Operation]) -> float:
-    """Area of the sub-surfaces that have an axis, without what is left to a clean-up tool, mm^2.
+    """Area of the sub-surfaces that have an axis, without what is left as rest material, mm^2.
 
     Parameters
     ----------

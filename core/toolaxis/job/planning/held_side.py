@@ -85,8 +85,7 @@ def cut_faces(part: Part, faces: Iterable[Face]) -> tuple[tuple[Face, ...], tupl
     cut = [cut_face(face, part.held) for face in asked]
     free = tuple(face for face in cut if face is not None)
     if not free:
-        raise InvalidInput("all faces that are asked for lie in the side that is held: hold another side, or choose "
-                           "other faces")
+        raise InvalidInput("all chosen faces lie in the clamped side: clamp another side, or choose other faces")
     held = tuple(HeldFace(face.number, face.label, face.area - (0.0 if left is None else left.area), left is None)
                  for face, left in zip(asked, cut, strict=True) if left is not face)
     return free, held

@@ -401,10 +401,10 @@ def _usual_objective(rack: ToolLibrary, mounting: Mounting | None) -> str:
 def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
     """That a plan with a held side is one of which the faces may be cut where it begins."""
     if given:
-        raise InvalidInput("a held side does not go with sub-surfaces given by hand: faces are cut where it begins; "
+        raise InvalidInput("a clamped side does not go with sub-surfaces given by hand: faces are cut where it begins; "
                            "leave one of both out")
     if chosen.in_layers:
-        raise InvalidInput(f"a held side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
+        raise InvalidInput(f"a clamped side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
                            "leave one of both out")
 
 

@@ -214,8 +214,8 @@ def why_faceted(face: Face, tool: Tool) -> str:
     count = len(split_at_kinks(face))
     if count <= _FACETS or face.area > count * tool.radius**2:
         return ""
-    return (f"face {face.number} is left to clean-up as a whole: kinks cut its {face.area:.1f} mm2 into {count} facets "
-            "that are too small for axes of their own; make it smooth in CAD to have it machined")
+    return (f"face {face.number} is left entirely as rest material: kinks cut its {face.area:.1f} mm2 into {count} "
+            "facets that are too small for axes of their own; make it smooth in CAD to have it machined")
 
 
 def smooth_pieces(faces: Iterable[Face], tool: Tool) -> list[Target]:

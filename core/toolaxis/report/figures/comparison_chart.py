@@ -72,7 +72,7 @@ def options_picture(options: Sequence[Option]) -> Figure:
     ax.plot([], [], linestyle="none", marker="$n$", color=GREY, markersize=6, label="number of sub-surfaces")
     ax.set_xlabel("different tool axes")
     ax.set_ylabel("reckoned time, s" if timed else "reckoned length, mm")
-    ax.set_title("cutting, links and clean-up against the number of orientations", fontsize=10)
+    ax.set_title("cutting, links and rest material against the number of orientations", fontsize=10)
     ax.set_xticks(count)
     ax.set_xlim(count[0] - 0.5, count[-1] + max(0.5, 0.2 * (count[-1] - count[0])))
     ax.margins(y=0.12)

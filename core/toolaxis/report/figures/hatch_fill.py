@@ -49,4 +49,4 @@ def hatch(canvas: Canvas, faces: Sequence[Face], slack: float) -> None:
 
 def hatch_patch() -> Patch:
     """What stands for a clean-up zone in a legend."""
-    return Patch(facecolor="white", edgecolor=COLOUR, hatch="////", linewidth=0.8, label="left to clean-up")
+    return Patch(facecolor="white", edgecolor=COLOUR, hatch="////", linewidth=0.8, label="rest material")

@@ -337,7 +337,7 @@ def _map_panel(ax: Axes, data: tuple[_SeenPlaces, Array, Bools], scale: tuple[st
         drawn.set_edgecolor("#777777")
         drawn.set_linewidth(0.0)
         handles.append(Patch(facecolor=_ASIDE, edgecolor="#777777", linewidth=0.0, hatch="////",
-                             label="left to clean-up: not asked for"))
+                             label="rest material: not asked for"))
     ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, fontsize=8, frameon=False)
     scale_bar(ax, seen.camera)
     bare(ax)

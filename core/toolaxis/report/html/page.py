@@ -204,7 +204,7 @@ def _said(plan: Plan, name: str) -> str:
     if op.number in copies:
         original = next(one.name for one in plan.operations if one.number == copies[op.number])
         return f"{name} (turned copy of {original})"
-    return name if op.done else f"{name} ({'clean-up' if op.left else 'no axis'})"
+    return name if op.done else f"{name} ({'rest material' if op.left else 'no axis'})"
 
 
 def _times(plan: Plan) -> list[dict[str, float]]:

@@ -1,4 +1,4 @@
-"""The tables of a page: orientations, operations, verdict, clean-up, settings and files, as rows of text."""
+"""The tables of a page: orientations, operations, verdict, rest material, settings and files, as rows of text."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -15,7 +15,7 @@ from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.zone import Zone
 from toolaxis.report.tables import number
-from toolaxis.shape.half_space import HELD_SIDE
+from toolaxis.shape.half_space import CLAMPED_SIDE, HELD_SIDE
 from toolaxis.tools.tool import Tool
 
 Array = NDArray[np.float64]
@@ -155,7 +155,7 @@ def verdict_rows(plan: Plan, verdict: Mapping[str, Any]) -> Rows:
         The document of verdict.json.
     """
     rows = [_verdict_row(op) for op in verdict["operations"]]
-    headings = [_words("operation"), _numbers("left to clean-up mm²"), _numbers("scallop left mm"),
+    headings = [_words("operation"), _numbers("rest material mm²"), _numbers("scallop left mm"),
                 _numbers("% of the rest within 1.02 limit"), _numbers("gouge mm"),
                 _numbers("clearance mm cutter/shank/holder"), _numbers("zones above"), _numbers("rays"),
                 _words("verdict")]
@@ -238,13 +238,13 @@ def zone_rows(plan: Plan) -> Rows:
             rows.append([op.name, str(k), f"{zone.area:.2f}", f"{zone.elsewhere:.2f}", why, lowest, highest])
     headings = [_words("operation"), _numbers("zone"), _numbers("area mm²"), _numbers("machined elsewhere mm²"),
                 _words("why"), _words("from mm"), _words("to mm")]
-    return _table("clean-up zones", headings, rows)
+    return _table("rest material", headings, rows)
 
 
 def _reason(zone: Zone) -> str:
     """Why a zone is left."""
     if HELD_SIDE in zone.avoided:
-        return f"beside the {HELD_SIDE}"
+        return f"beside the {CLAMPED_SIDE}"
     if zone.avoided:
         return f"beside face {', '.join(zone.avoided)}, to be avoided"
     return "at a wall, an obstacle or in a corner" if zone.at_wall else "undercut at the border"

@@ -128,7 +128,7 @@ def _mesh_words(plan: Plan, op: Operation, turned: int) -> str:
     if op.done:
         return words
     left_to_clean_up = outcome_of([op], plan.blades) == "complete"
-    return words + (", left to clean-up" if left_to_clean_up else ", no axis")
+    return words + (", rest material" if left_to_clean_up else ", no axis")
 
 
 def _edge_lines(plan: Plan, bound: float) -> go.Scatter3d | None:
@@ -258,9 +258,9 @@ def _zones(operations: Sequence[Operation], meshes: _Meshes, bound: float) -> li
     faces = [face for op in operations for face in zone_faces(op)]
     if not faces:
         return []
-    fill = meshes.mesh(faces, "left to clean-up", VERMILION, lift=8 * bound, opacity=0.55)
+    fill = meshes.mesh(faces, "rest material", VERMILION, lift=8 * bound, opacity=0.55)
     loops = [loop for face in faces for loop in _outline_points(face, bound)]
-    return [fill, _lines(loops, "borders of clean-up", VERMILION, 3.0, showlegend=False)]
+    return [fill, _lines(loops, "borders of rest material", VERMILION, 3.0, showlegend=False)]
 
 
 def _axes(operations: Sequence[Operation], length: float) -> list[Any]:

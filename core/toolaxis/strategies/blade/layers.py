@@ -192,7 +192,7 @@ class Ring:
                 bad = middle
         if good == 0.0:
             raise InvalidInput(f"no layer below height {top:.3f} mm keeps the scallop height on face "
-                               f"{self.face.label}: give a larger one, or {SMALLER_CUTTER} where it is hollow")
+                               f"{self.face.label}: give a larger one, or {SMALLER_CUTTER} where it is concave")
         return good
 
 

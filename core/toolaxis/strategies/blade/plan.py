@@ -368,7 +368,7 @@ def _orientation_of(search: BladeSearch, schedule: BladeSchedule, path: ToolPath
              f"{keys} key points" if search.kind == "keys" else "tool angles of least peak acceleration", CHECKED]
     if sum(schedule.left) > 0:
         words.append(f"{100 * schedule.left[0]:.1f} % of the span at the tip and {100 * schedule.left[1]:.1f} % at the "
-                     "root have no room for the tool and are left to clean-up")
+                     "root have no room for the tool and are left as rest material")
     axis = np.asarray(unit(layers[0].axes[0] + layers[-1].axes[-1]))
     return Orientation(axis, search.feed, path.passes, float(path.passes), length, area / length, proof.gouge,
                        proof.clearance, "feasible", (*words, *refused), lead=lean, unreached=sum(schedule.left))

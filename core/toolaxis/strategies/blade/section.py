@@ -127,7 +127,7 @@ def _check_simple(rows: Array, place: str) -> None:
     if len(found):
         at = rows[own[i[found[0, 0]], found[0, 1]]]
         raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take {SMALLER_CUTTER} where it is "
-                           "hollow, or repair the section")
+                           "concave, or repair the section")
 
 
 def _cross(a: Array, b: Array) -> Array:

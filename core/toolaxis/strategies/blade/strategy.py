@@ -24,8 +24,8 @@ class BladeStrategy(Strategy):
     title = "blade, least acceleration"
     summary = ("a ball end follows layers around blades; one rotary axis swings one way only, with the least "
                "acceleration")
-    note = ("A ball end goes around a blade in layers, one rotary axis swings. Needs a ball end; of the faces around a "
-            "blade one is enough.")
+    note = ("A ball end goes around a blade in layers while one rotary axis swivels. Needs a ball end; of the faces "
+            "around a blade one is enough.")
     rank = 3
     rotary_axes = 1
     in_layers = True

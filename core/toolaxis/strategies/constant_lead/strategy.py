@@ -20,7 +20,7 @@ class ConstantLead(Strategy):
     name = "sturz"
     title = "five axes, constant lead"
     summary = "simultaneous five-axis milling with the best constant lead"
-    note = "The axis leans by one angle from the normal, along the feed."
+    note = "The axis leans by a constant angle from the normal, along the feed."
     rank = 1
     at_points = True
     compared = True

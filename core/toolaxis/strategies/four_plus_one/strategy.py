@@ -31,7 +31,7 @@ class FourPlusOne(Strategy):
     @property
     def pictures(self) -> dict[str, str]:
         """The free angle."""
-        return {"angle": "Axis that turns"}
+        return {"angle": "Rotating axis"}
 
     def plan(self, task: "FaceProblem", inputs: "PlanInputs",
              start: "NDArray[np.float64] | None" = None) -> "tuple[Orientation, ToolPath | None]":

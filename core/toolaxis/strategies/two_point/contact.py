@@ -132,7 +132,7 @@ def _hollow(radius: float, rho: ArrayLike) -> Array:
     found = np.asarray(rho, dtype=float)
     if not (found > radius).all():
         worst = float(np.min(found))
-        raise InvalidInput(f"radius of curvature across the feed is {worst} mm: two-point contact needs a hollow "
+        raise InvalidInput(f"radius of curvature across the feed is {worst} mm: two-point contact needs a concave "
                            f"surface less tight than the cutter's {radius} mm; take {SMALLER_CUTTER}, or one contact "
                            "where the surface is convex")
     return found

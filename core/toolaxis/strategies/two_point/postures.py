@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 TWO, CONVEX, BEHIND, UNEVEN, TIGHT = range(5)
 #: Why a point has one contact, or none; the order of the codes.
-REASONS = ("two contacts", "one contact: the surface is not hollow across the feed",
+REASONS = ("two contacts", "one contact: the surface is not concave across the feed",
            "one contact: the back of the bottom needs more lean than two contacts have",
            "one contact: the surface is uneven across the feed",
            "no contact within the tolerance: the surface is tighter than the cutter")

@@ -1,4 +1,4 @@
-"""The strategy `two-point`: a flat end or torus that touches hollow faces at two points."""
+"""The strategy `two-point`: a flat end or torus that touches concave faces at two points."""
 
 from typing import TYPE_CHECKING
 
@@ -22,8 +22,8 @@ class TwoPoint(Strategy):
 
     name = "two-point"
     title = "two-point contact"
-    summary = "simultaneous five-axis milling in which a flat end or torus touches hollow faces at two points"
-    note = "The cutter touches the face at two points where that is hollow. Needs a flat end or bull nose."
+    summary = "simultaneous five-axis milling in which a flat end or torus touches concave faces at two points"
+    note = "The cutter touches the face at two points where it is concave. Needs a flat end mill or bull nose."
     rank = 2
     own_spacing = True
     promise = "two contacts on"
@@ -31,7 +31,7 @@ class TwoPoint(Strategy):
     @property
     def pictures(self) -> dict[str, str]:
         """The cutter at its contacts."""
-        return {"contacts": "Two contacts"}
+        return {"contacts": "Two-point contact"}
 
     def check(self, asked: Asked) -> None:
         """Check that the cutter has a flat bottom."""

@@ -17,7 +17,7 @@ translate = FreeCAD.Qt.translate
 _CLOSE = 1e-6
 _FROM = (Property("LinkHidden", "OrientedFrom", "Tool Axis", "The operation of Tool Axis that the passes are from",
                   True),
-         Property("String", "MadeFor", "Tool Axis", "What the passes are for", True))
+         Property("String", "MadeFor", "Tool Axis", "State of part and operation that the passes were made for", True))
 
 
 @dataclass(frozen=True)

@@ -143,7 +143,7 @@ def _ready(operation):
     reasons = why_stale(operation)
     if reasons:
         name = plain_label(operation)
-        raise InvalidInput(f"'{name}' is stale ({'; '.join(reasons)}): recompute it before making jobs")
+        raise InvalidInput(f"'{name}' is out of date ({'; '.join(reasons)}): recompute it before making jobs")
     if operation.AxisMoves:
         raise InvalidInput(f"the axis of '{operation.Label}' moves while it cuts, and jobs have fixed planes: export a "
                            "program instead, or choose fixed axes")

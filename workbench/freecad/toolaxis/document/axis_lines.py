@@ -6,7 +6,7 @@ from freecad.toolaxis.document.properties import Property, assign, ensure
 
 translate = FreeCAD.Qt.translate
 
-_PROPERTIES = (Property("Integer", "Every", "Tool Axis", "One line for so many points of the cuts", True),
+_PROPERTIES = (Property("Integer", "Every", "Tool Axis", "One line for this many points of the cutting moves", True),
                Property("Length", "LineLength", "Tool Axis", "Length of a line", True))
 #: Lines at most, and their length as a share of the face's size.
 MOST, SHARE = 300, 0.1

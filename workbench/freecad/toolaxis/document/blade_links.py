@@ -10,11 +10,11 @@ translate = FreeCAD.Qt.translate
 
 _BLADE = (Property("Integer", "Blade", "Tool Axis", "Number of the blade", True),)
 _LINK = (
-    Property("Placement", "Turn", "Tool Axis", "The turn about the wheel's axis, in the part's own frame", True),
+    Property("Placement", "Turn", "Tool Axis", "Rotation about the wheel's axis, in the part's own frame", True),
     Property("String", "Face", "Tool Axis", "The face of this blade", True),
-    Property("Vector", "Axis", "Result", "Tool axis from tip to spindle, as planned in the document's space", True),
-    Property("Length", "Gouge", "Result", "Upper bound of the penetration below the machined skin", True),
-    Property("String", "Clearance", "Result", "Lower bounds of distances, proven on this blade", True))
+    Property("Vector", "Axis", "Result", "Tool axis from tip to spindle, as planned, in document coordinates", True),
+    Property("Length", "Gouge", "Result", "Upper bound of the gouge in the machined faces", True),
+    Property("String", "Clearance", "Result", "Lower bounds of clearances, proven on this blade", True))
 #: Greatest distance of the points of a turned copy from the turned points, mm.
 _EXACT = 1e-6
 #: Links of which more do not show their passes at first.

@@ -14,7 +14,7 @@ translate = FreeCAD.Qt.translate
 
 _GROUP = "Machine"
 _ANGLES = (Property("StringList", "RotaryAngles", _GROUP,
-                    "Where the rotary axes stand, both solutions, the one that is taken first", True),)
+                    "Positions of the rotary axes in both solutions, the one used first", True),)
 
 
 class MachineProxy(Proxy):
@@ -28,9 +28,9 @@ class MachineProxy(Proxy):
     Type = "ToolAxisMachine"
     properties = (
         Property("String", "Machine", _GROUP, "Name in the library, or file", True),
-        Property("Vector", "Offset", _GROUP, "Where the document's origin stands on the table, all axes at zero", True),
-        Property("String", "Source", _GROUP, "Where its numbers are from", True),
-        Property("StringList", "Assumed", _GROUP, "Which of its numbers are assumed", True),
+        Property("Vector", "Offset", _GROUP, "Position of the document's origin on the table, all axes at zero", True),
+        Property("String", "Source", _GROUP, "Source of its data", True),
+        Property("StringList", "Assumed", _GROUP, "Data that are assumed", True),
         Property("StringList", "Axes", _GROUP, "Its axes with their ranges", True))
 
     def execute(self, thing):

@@ -91,7 +91,7 @@ def _against(mounted, rotary, within, tips):
     meeting = [pair for pair, distance in zip(names, apart[0], strict=True) if distance < 0]
     if meeting:
         (one, other), depth = names[int(np.argmin(apart[0]))], -float(apart[0].min())
-        return f"the {one} meets the {other} by {in_tenths(depth)} mm", tuple(sorted({*sum(meeting, ())}))
+        return f"the {one} collides with the {other} by {in_tenths(depth)} mm", tuple(sorted({*sum(meeting, ())}))
     return "", ()
 
 

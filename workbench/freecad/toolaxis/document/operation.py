@@ -6,7 +6,7 @@ import FreeCAD
 from freecad.toolaxis.document.children import DeletionObserver, note
 from freecad.toolaxis.document.inputs import FORMER_TOLERANCE
 from freecad.toolaxis.document.kinds import is_operation
-from freecad.toolaxis.document.properties import Property, Proxy, assign
+from freecad.toolaxis.document.properties import Property, Proxy, assign, ensure
 from freecad.toolaxis.document.stale_label import MARK, mark_label
 from freecad.toolaxis.document.staleness import same, standing, why_stale
 from freecad.toolaxis.document.strategies import STRATEGIES
@@ -24,41 +24,44 @@ INPUTS = (
     Property("Length", "StickOut", _ASKED, "Length from the tip to the holder's lower face"),
     Property("Length", "FluteLength", _ASKED, "Length of the cutting edge from the tip; 0: two diameters"),
     # Set in the panel: FreeCAD's own editor of properties shows 0.02 mm as 20 µm, and takes 0.1 for 0.1 µm.
-    Property("Length", "Scallop", _ASKED, "Greatest scallop height; double-click the operation to change it", True),
-    Property("Length", "Tolerance", _ASKED, "How far the face may be cut too deep; double-click the operation to "
-             "change it", True, former=FORMER_TOLERANCE),
-    Property("Length", "Allowance", _ASKED, "Stock left on the face; double-click the operation to change it", True),
-    Property("String", "Limits", _ASKED, "Limits of the axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
+    Property("Length", "Scallop", _ASKED, "Maximum scallop height; double-click the operation to change it", True),
+    Property("Length", "Tolerance", _ASKED, "Allowed gouge of the finished face; double-click the operation to change "
+                                            "it", True, former=FORMER_TOLERANCE),
+    Property("Length", "Allowance", _ASKED, "Material to leave on the face; double-click the operation to change "
+                                            "it", True),
+    Property("String", "Limits", _ASKED, "Limits of the tool axis: cone:X,Y,Z,DEG or rotary:tilt=A..B,turn=C..D"),
     Property("LinkListGlobal", "Obstacles", _ASKED, "Bodies to avoid"),
-    Property("Enumeration", "Objective", _ASKED, "What is to be least", False, False, ("length", "passes")),
+    Property("Enumeration", "Objective", _ASKED, "Quantity that the choice of the tool axis "
+                                                 "minimises", False, False, ("length", "passes")),
     Property("Enumeration", "Direction", _ASKED, "Direction of the passes", False, False,
              DIRECTIONS),
-    Property("Enumeration", "CutPattern", _ASKED, "Passes along parameters of the face, in parallel planes, or in a "
-             "field", False, False, PASSES),
-    Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting motion"),
-    Property("Float", "SpindleSpeed", _ASKED, "rev/min"),
+    Property("Enumeration", "CutPattern", _ASKED, "Passes along parameters of the face, in parallel planes, or "
+                                                  "following the scallop height", False, False, PASSES),
+    Property("Speed", "FeedRate", _ASKED, "Feed rate of the cutting moves"),
+    Property("Float", "SpindleSpeed", _ASKED, "Spindle speed, rev/min"),
     Property("String", "Regions", _ASKED, "Sub-surfaces of each face: a number, auto, or nothing for whole faces"),
-    Property("String", "Orientations", _ASKED, "Different axes at most: a number, auto, or nothing for one each"),
-    Property("Enumeration", "Method", _ASKED, "How axes are found", False, False,
+    Property("String", "Orientations", _ASKED, "Maximum number of orientations: a number, auto, or nothing for one "
+                                               "each"),
+    Property("Enumeration", "Method", _ASKED, "Method by which tool axes are found", False, False,
              ("sphere", "sectors", "jerk", "roman", "normal", "one", "ball")),
-    Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while it cuts", False, False,
+    Property("Enumeration", "Strategy", _ASKED, "Fixed axes, or how the axis moves while cutting", False, False,
              STRATEGIES),
-    Property("Float", "Roughness", _ASKED, "Greatest Ra across the feed, micrometres, for strategies that look at it"),
-    Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and turn it to the others"),
+    Property("Float", "Roughness", _ASKED, "Maximum Ra across the feed, micrometres, for strategies that use it"),
+    Property("Bool", "Blades", _ASKED, "Plan one blade of a part with blades and copy it to the others"),
     Property("Bool", "Compare", _ASKED, "Also plan the same faces by other methods"),
     Property("StringList", "Rack", _ASKED, "Tool libraries, folders and tools to choose from; nothing: the tool above"),
-    Property("Integer", "MostTools", _ASKED, "Greatest number of tools of the rack; 0: any number"),
+    Property("Integer", "MostTools", _ASKED, "Maximum number of tools from the rack; 0: any number"),
     Property("Integer", "ToolNumber", _ASKED, "Place of the tool in the magazine; 0: none"),
-    Property("String", "ToolTitle", _ASKED, "What the shop calls the tool"),
-    Property("Length", "Stock", _ASKED, "What roughing left; double-click the operation to change it", True),
-    Property("Angle", "LeastLean", _ASKED, "Least angle of ball ends to the normal"),
-    Property("Length", "GreatestStepOver", _ASKED, "Greatest distance of passes, 0: none; double-click the operation "
-             "to change it", True),
-    Property("String", "AllowanceOn", _ASKED, "Allowances on some faces: 3,5-8=0.3;9=0.1"),
-    Property("Length", "Lead", _ASKED, "Radius of the arcs to and from passes, 0: straight ramps; double-click the "
-             "operation to change it", True),
+    Property("String", "ToolTitle", _ASKED, "Name of the tool in the shop"),
+    Property("Length", "Stock", _ASKED, "Material left by roughing; double-click the operation to change it", True),
+    Property("Angle", "LeastLean", _ASKED, "Minimum lean of ball ends from the normal"),
+    Property("Length", "GreatestStepOver", _ASKED, "Maximum step-over, 0: no limit; double-click the operation to "
+                                                   "change it", True),
+    Property("String", "AllowanceOn", _ASKED, "Allowances of single faces: 3,5-8=0.3;9=0.1"),
+    Property("Length", "Lead", _ASKED, "Radius of lead-in and lead-out arcs, 0: straight ramps; double-click the "
+                                       "operation to change it", True),
     Property("String", "AvoidFaces", _ASKED, "Faces of the part that no tool may touch: 3,5-8"),
-    Property("String", "Held", _ASKED, "The side that is held in the clamping: z<12.5"),
+    Property("String", "Held", _ASKED, "Clamped side of the part: z<12.5"),
     Property("String", "Origin", _ASKED, "Origin of the work coordinates: stock:top, part:top-front-left or "
              "point:X,Y,Z; nothing: that of the part"),
     Property("String", "StockBox", _ASKED, "Margins of the stock: 2, or 1,1,1,1,0,2 for -X, +X, -Y, +Y, -Z, +Z; "
@@ -68,22 +71,23 @@ LOCKS = (
     Property("Bool", "FeedLocked", _LOCKS, "The feed direction is kept when the operation is computed again"),
     Property("Bool", "DrawnByHand", _LOCKS, "The border is kept when the plan is computed again"))
 RESULTS = (
-    Property("String", "Outcome", _FOUND, "optimal, feasible, infeasible, not_found or cancelled", True),
-    Property("StringList", "Reasons", _FOUND, "What limits the choice, or why there is no axis", True),
-    Property("Bool", "Stale", _FOUND, "The part or the inputs have changed since: recompute the operation", True),
-    Property("StringList", "StaleReasons", _FOUND, "What has changed", True),
-    Property("Vector", "Axis", _FOUND, "Tool axis from tip to spindle, as planned in the document's space", True),
+    Property("String", "Outcome", _FOUND, "Outcome: optimal, feasible, infeasible, not_found or cancelled", True),
+    Property("StringList", "Reasons", _FOUND, "Reasons that limit the choice of the axis, or why there is none", True),
+    Property("Bool", "Stale", _FOUND, "Out of date: the part or the inputs have changed since; recompute the "
+                                      "operation", True),
+    Property("StringList", "StaleReasons", _FOUND, "Changes that put the results out of date", True),
+    Property("Vector", "Axis", _FOUND, "Tool axis from tip to spindle, as planned, in document coordinates", True),
     Property("String", "FeedParameter", _FOUND, "Parameter that varies along the passes, u or v", True),
     Property("Integer", "Passes", _FOUND, "Number of passes", True),
-    Property("Length", "AverageStripWidth", _FOUND, "Area over cutting length", True),
-    Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion", True),
+    Property("Length", "AverageStripWidth", _FOUND, "Area divided by cutting length", True),
+    Property("Length", "CuttingLength", _FOUND, "Length of the cutting moves", True),
     Property("Time", "MachiningTime", _FOUND, "Time of passes and links", True),
-    Property("Length", "Gouge", _FOUND, "Upper bound of the penetration below the machined skin", True),
-    Property("Bool", "AxisMoves", _FOUND, "Whether the axis moves while it cuts; Axis is its mean then", True),
-    Property("Angle", "MeanLean", _FOUND, "Where the axis moves: its mean angle to the normal, or its constant lead",
+    Property("Length", "Gouge", _FOUND, "Upper bound of the gouge in the machined faces", True),
+    Property("Bool", "AxisMoves", _FOUND, "Whether the axis moves while cutting; Axis is then its mean", True),
+    Property("Angle", "MeanLean", _FOUND, "Where the axis moves: its mean lean from the normal, or its constant lead",
              True),
-    Property("Float", "LeftToCleanUp", _FOUND, "Share of the area left to a clean-up tool", True),
-    Property("StringList", "NotChecked", _FOUND, "What the collision check left out because it was not given", True))
+    Property("Float", "LeftToCleanUp", _FOUND, "Share of the area left as rest material", True),
+    Property("StringList", "NotChecked", _FOUND, "Not checked for collisions, because it was not given", True))
 KEPT = (
     MARK,
     Property("String", "AxisMap", _KEPT, "Orientation with the map of all axes, JSON", True, True),
@@ -95,22 +99,29 @@ KEPT = (
     Property("IntegerList", "Motions", _KEPT, "Kind of each motion", True, True),
     Property("IntegerList", "Starts", _KEPT, "Where each pass starts", True, True))
 VERDICT = (
-    Property("String", "Verdict", _JUDGED, "not verified, passed, failed, or out of date", True),
+    Property("String", "Verdict", _JUDGED, "Result of Verify: not verified, passed, failed, or out of date", True),
     Property("String", "JudgedWith", _JUDGED, "Inputs at the time of the verdict, JSON", True, True),
     Property("FloatList", "JudgedShapes", _JUDGED, "Shapes at the time of the verdict", True, True),
     Property("StringList", "VerdictReasons", _JUDGED, "Why it failed, and what was not checked", True),
-    Property("Length", "ScallopMax", _JUDGED, "Greatest height left where the cutter came", True),
-    Property("Float", "ShareWithin", _JUDGED, "Share of the area, clean-up zones aside, left within 1.02 times the "
-             "scallop height", True),
-    Property("Length", "GougeMax", _JUDGED, "Deepest gouge", True),
-    Property("Length", "GougeAllowed", _JUDGED, "Deepest gouge that is accepted", True),
-    Property("VectorList", "WorstScallops", _JUDGED, "Highest places left, in the plane's frame", True),
+    Property("Length", "ScallopMax", _JUDGED, "Maximum scallop height where the cutter came", True),
+    Property("Float", "ShareWithin", _JUDGED, "Share of the area within 1.02 times the scallop height, rest material "
+                                              "excluded", True),
+    Property("Length", "GougeMax", _JUDGED, "Maximum gouge", True),
+    Property("Length", "GougeAllowed", _JUDGED, "Allowed gouge", True),
+    Property("VectorList", "WorstScallops", _JUDGED, "Points with the highest scallops, in the frame of the "
+                                                     "plane", True),
     Property("FloatList", "WorstScallopHeights", _JUDGED, "Their heights, mm", True),
-    Property("VectorList", "WorstGouges", _JUDGED, "Deepest gouges, in the plane's frame", True),
+    Property("VectorList", "WorstGouges", _JUDGED, "Points with the deepest gouges, in the frame of the plane", True),
     Property("FloatList", "WorstGougeDepths", _JUDGED, "Their depths, mm", True),
     Property("IntegerList", "WorstGougeMotions", _JUDGED, "Motions that cut them, -1 where not known", True, True))
 
-CLEARANCES = ("cutter", "shank", "holder")
+CLEARANCES = {
+    "cutter": Property("Distance", "CutterClearance", _FOUND,
+                       "Lower bound of the distance from the cutter to everything but the machined faces", True),
+    "shank": Property("Distance", "ShankClearance", _FOUND,
+                      "Lower bound of the distance from the shank to everything but the machined faces", True),
+    "holder": Property("Distance", "HolderClearance", _FOUND,
+                       "Lower bound of the distance from the holder to everything but the machined faces", True)}
 #: Distances beyond this are shown as this, mm: nothing stands there.
 _FAR = 1e6
 
@@ -255,19 +266,15 @@ def set_results(thing, found, not_checked):
            Gouge=max(float(found.gouge), 0.0), LeftToCleanUp=float(found.unreached), NotChecked=list(not_checked),
            AxisMoves=found.lead is not None, MeanLean=degrees(found.lead or 0.0), Verdict="not verified",
            VerdictReasons=[])
-    for name in CLEARANCES:
-        _set_clearance(thing, name, found.clearance.get(name))
+    for name, described in CLEARANCES.items():
+        _set_clearance(thing, described, found.clearance.get(name))
 
 
-def _set_clearance(thing, member, distance):
+def _set_clearance(thing, described, distance):
     """A distance that is not known has no property, so that nobody takes it for zero or for safe."""
-    name = f"{member.capitalize()}Clearance"
-    there = name in thing.PropertiesList
     if distance is None:
-        if there:
-            thing.removeProperty(name)
+        if described.name in thing.PropertiesList:
+            thing.removeProperty(described.name)
         return
-    if not there:
-        thing.addProperty("App::PropertyDistance", name, _FOUND,
-                          f"Lower bound of the distance of the {member} to everything but the machined skin", 0, True)
-    setattr(thing, name, min(float(distance), _FAR))
+    ensure(thing, (described,))
+    setattr(thing, described.name, min(float(distance), _FAR))

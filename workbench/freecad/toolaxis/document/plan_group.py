@@ -19,20 +19,21 @@ from toolaxis.plan.baseline import clock
 _FOUND, _KEPT = "Result", "Tool Axis"
 
 FIGURES = (
-    Property("String", "Outcome", _FOUND, "complete, incomplete or cancelled", True),
-    Property("StringList", "Warnings", _FOUND, "What was noticed of the part", True),
-    Property("Bool", "Stale", _FOUND, "The part or the inputs have changed since: recompute the plan", True),
-    Property("StringList", "StaleReasons", _FOUND, "What has changed", True),
+    Property("String", "Outcome", _FOUND, "Outcome: complete, incomplete or cancelled", True),
+    Property("StringList", "Warnings", _FOUND, "Warnings about the part", True),
+    Property("Bool", "Stale", _FOUND, "Out of date: the part or the inputs have changed since; recompute the "
+                                      "plan", True),
+    Property("StringList", "StaleReasons", _FOUND, "Changes that put the results out of date", True),
     Property("Integer", "SubSurfaces", _FOUND, "Number of sub-surfaces", True),
-    Property("Integer", "DifferentAxes", _FOUND, "Number of different axes", True),
-    Property("Length", "CuttingLength", _FOUND, "Length of the cutting motion of all operations", True),
-    Property("Length", "Travel", _FOUND, "Length of entries, exits and links", True),
-    Property("Time", "MachiningTime", _FOUND, "Time of all operations, changes of the axis included", True),
-    Property("Area", "FaceArea", _FOUND, "Area of the faces, where several tools were planned with", True),
-    Property("Area", "Machined", _FOUND, "What of it is machined", True),
-    Property("Area", "ProvenOutOfReach", _FOUND, "What of it is proven to be out of reach of every tool", True),
-    Property("Area", "Open", _FOUND, "What of it was tried and stays open", True),
-    Property("Area", "NotBegun", _FOUND, "What of it was not begun when the plan was stopped", True),
+    Property("Integer", "DifferentAxes", _FOUND, "Number of orientations", True),
+    Property("Length", "CuttingLength", _FOUND, "Length of the cutting moves of all operations", True),
+    Property("Length", "Travel", _FOUND, "Length of lead-ins, lead-outs and links", True),
+    Property("Time", "MachiningTime", _FOUND, "Time of all operations, index moves included", True),
+    Property("Area", "FaceArea", _FOUND, "Area of the faces, if planned with several tools", True),
+    Property("Area", "Machined", _FOUND, "Area that is machined", True),
+    Property("Area", "ProvenOutOfReach", _FOUND, "Area proven to be out of reach of every tool", True),
+    Property("Area", "Open", _FOUND, "Area that was tried and stays open", True),
+    Property("Area", "NotBegun", _FOUND, "Area not begun when the plan was stopped", True),
     Property("StringList", "ToolsUsed", _FOUND, "Tools with their operations and times", True))
 KEPT = (
     MARK,

@@ -206,4 +206,4 @@ def _what_changed(planned, found, obstacles):
         return ["the part has changed"]
     if len(planned) != len(found) or not same(planned[:size * (1 + obstacles)], found[:size * (1 + obstacles)]):
         return ["a body to avoid was moved or changed"]
-    return ["the part was moved or turned, and the limits of the axis, the held side or the stock were not"]
+    return ["the part was moved or turned, and the limits of the axis, the clamped side or the stock were not"]

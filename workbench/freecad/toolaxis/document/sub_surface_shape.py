@@ -10,7 +10,7 @@ translate = FreeCAD.Qt.translate
 _PROPERTIES = (
     Property("String", "Shows", "Tool Axis", "What it shows", True),
     Property("Color", "Colour", "Tool Axis", "Its colour", True, True),
-    Property("Placement", "Frame", "Tool Axis", "This frame in the part's own frame", True, True))
+    Property("Placement", "Frame", "Tool Axis", "This coordinate system in that of the part", True, True))
 #: What the objects show, and how their names begin.
 SURFACE, CLEAN_UP = "sub-surface", "clean-up"
 _NAMES = {SURFACE: "SubSurface", CLEAN_UP: "CleanUp"}
@@ -67,7 +67,8 @@ def show_surface(operation, op, chain, colour):
         _fill(thing, made, _HATCH if what == CLEAN_UP else colour)
         thing.setExpression("Placement", None)
         follow(thing, chain, "Frame")
-        title = translate("ToolAxis", "Sub-surface {}") if what == SURFACE else translate("ToolAxis", "Clean-up {}")
+        title = (translate("ToolAxis", "Sub-surface {}") if what == SURFACE
+                 else translate("ToolAxis", "Rest material {}"))
         thing.Label = title.format(operation.Label)
 
 

@@ -69,8 +69,8 @@ class ToolOnPasses(Proxy):
 
     Type = "ToolAxisTool"
     properties = (
-        Property("FloatConstraint", "Position", "Tool Axis", "Share of the way along the passes, 0 to 1"),
-        Property("LinkGlobal", "Passes", "Tool Axis", "The passes that the tool stands on", True),
+        Property("FloatConstraint", "Position", "Tool Axis", "Position along the passes, 0 to 1"),
+        Property("LinkGlobal", "Passes", "Tool Axis", "The passes of the tool", True),
         Property("Placement", "Station", "Tool Axis", "Where the tool stands in the frame of its passes", True, True))
 
     def __init__(self, thing):

@@ -9,7 +9,7 @@ from freecad.toolaxis.document.sub_surface_shape import SURFACE, is_shown
 
 _GROUP = "Legend"
 _PROPERTIES = (
-    Property("String", "Shows", _GROUP, "What the colours stand for", True),
+    Property("String", "Shows", _GROUP, "Quantity shown by the colours", True),
     Property("Length", "ScaleMinimum", _GROUP, "Value at the dark end of the colours", True),
     Property("Length", "ScaleMaximum", _GROUP, "Value at the light end of the colours: the limit", True),
     Property("StringList", "Legend", _GROUP, "The colours in words", True),
@@ -204,7 +204,7 @@ def _paint(thing, one, limits):
     thing.Deviation, thing.VertexColors = one.values, one.colours
     assign(thing, ScaleMinimum=0.0, ScaleMaximum=float(limit), Legend=[
         "violet: 0", f"yellow: the limit, {limit:g} mm", f"orange: above {most:g} mm", "pink: never reached",
-        "grey: left to clean-up"])
+        "grey: rest material"])
 
 
 def _rows_of(mesh, points):

@@ -3,7 +3,7 @@
 from freecad.toolaxis.document.placement import carried, follow
 from freecad.toolaxis.document.properties import Property, assign, ensure
 
-_PROPERTIES = (Property("Placement", "Frame", "Tool Axis", "This frame in the part's own frame", True),)
+_PROPERTIES = (Property("Placement", "Frame", "Tool Axis", "This coordinate system in that of the part", True),)
 #: Greatest deviation of an attached frame from where it should stand, mm and in the directions.
 _CLOSE = 1e-9
 

@@ -70,7 +70,7 @@ def origin_in_document(origin, shapes):
     _, own = parse_origin(origin)
     point = shapes[0].Placement.multVec(FreeCAD.Vector(*own))
     if not any(vertex.Point.distanceToPoint(point) < _CLOSE for shape in shapes for vertex in shape.Vertexes):
-        raise InvalidInput("the vertex that was picked as the origin is gone: pick it again")
+        raise InvalidInput("the vertex selected as the origin is gone: select it again")
     return _POINT + ",".join(f"{value:.12g}" for value in (point.x, point.y, point.z))
 
 

@@ -349,6 +349,6 @@ def along(known, journey, rows, progress):
     count, found = STEPS * (len(journey.legs) - 1) + 1, []
     with activate_progress(progress):
         for k in range(count):
-            progress.report("looking for collisions", k, count)
+            progress.report("checking for collisions", k, count)
             found.append(known.at(rows[journey.station(k / STEPS)], journey.at(k / STEPS)))
     return found

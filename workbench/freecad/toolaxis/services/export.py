@@ -28,7 +28,7 @@ _SHARED = {"scallop": "scallop heights", "tolerance": "machining tolerances", "a
            "direction": "directions", "passes": "kinds of passes", "stock": "heights of stock",
            "least_lean": "least leans", "greatest_step_over": "greatest step-overs",
            "allowance_on": "allowances on faces", "lead": "radii of lead-in and lead-out",
-           "avoid_faces": "faces to avoid", "held": "held sides", "origin": "origins", "stock_box": "stocks"}
+           "avoid_faces": "faces to avoid", "held": "clamped sides", "origin": "origins", "stock_box": "stocks"}
 _JUDGED = {"passed": "passed", "failed": "FAILED"}
 
 
@@ -290,7 +290,7 @@ def _inputs(operation):
     reasons = why_stale(operation)
     if reasons:
         name = plain_label(operation)
-        raise InvalidInput(f"'{name}' is stale ({'; '.join(reasons)}): recompute it before it is written")
+        raise InvalidInput(f"'{name}' is out of date ({'; '.join(reasons)}): recompute it before it is written")
     return inputs_of(operation)
 
 

@@ -56,7 +56,7 @@ def stale_text(thing):
     ----------
     thing : App.DocumentObject
     """
-    return FreeCAD.Qt.translate("ToolAxis", "Stale: {}. Compute again").format(list_of(thing.StaleReasons))
+    return FreeCAD.Qt.translate("ToolAxis", "Out of date: {}. Recompute").format(list_of(thing.StaleReasons))
 
 
 def list_of(reasons):

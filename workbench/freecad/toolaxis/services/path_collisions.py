@@ -137,7 +137,7 @@ def bumps_among(tool, path, read, progress):
     from toolaxis.progress import activate_progress
 
     moves = bool(np.ptp(path.axis, axis=0).max(initial=0.0) > 1e-9)
-    progress.report("looking for collisions", 0, 1)
+    progress.report("checking for collisions", 0, 1)
     with activate_progress(progress):
         bad, some = collisions.met_by_tool(tool, (path.cl, path.axis), read.around, moves)
     end = 0 if moves else 1  # motion k leads from point k - 1 to point k
@@ -160,6 +160,7 @@ def _join_motions(at, bad, read):
         else:
             made.append({"key": (member, face), "first": motion, "last": motion, "depth": depth})
     return tuple(PathCollision(one["first"], one["last"],
-                               f"the {one['key'][0]} meets {read.names[one['key'][1]]} by {one['depth']:.1f} mm",
+                               f"the {one['key'][0]} collides with {read.names[one['key'][1]]} by "
+                               f"{one['depth']:.1f} mm",
                                one["key"][0], read.things[one["key"][1]])
                  for one in made)

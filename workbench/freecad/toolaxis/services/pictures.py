@@ -48,7 +48,7 @@ def title_of(name):
     titles = {**picture_titles(), "passes": translate("ToolAxis", "Passes and tool"),
               "plan": translate("ToolAxis", "Whole part"), "machine": translate("ToolAxis", "On the machine"),
               "tightest": translate("ToolAxis", "Where it is tightest"),
-              "orientations": translate("ToolAxis", "Length and number of axes"),
+              "orientations": translate("ToolAxis", "Length and number of orientations"),
               "baselines": translate("ToolAxis", "Other methods")}
     title = titles.get(kind, kind)
     return f"{title}, {operation}" if operation else title

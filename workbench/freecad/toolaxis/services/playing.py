@@ -336,7 +336,7 @@ def look_out(laid, copies, progress, known=None):
     read = FacesRead.of(copies, progress) if known is None else FacesRead.again(known)
     found = []
     for row, one in enumerate(laid.operations):
-        progress.report("looking for collisions", row, len(laid.operations))
+        progress.report("checking for collisions", row, len(laid.operations))
         some = [*bumps_among(one.tool, one.path, read, progress).found, *_gouging(one)]
         if known is not None:
             some += _machine_bumps(known, laid, row, progress)

@@ -151,7 +151,7 @@ class Legend(QtWidgets.QWidget):
         painter.setPen(self.palette().color(QtGui.QPalette.WindowText))
         if not free:
             painter.drawText(QtCore.QRectF(0, 0, self.width(), 34), QtCore.Qt.AlignLeft | QtCore.Qt.AlignVCenter,
-                             translate("ToolAxis", "No axis is free."))
+                             translate("ToolAxis", "No possible axis."))
             return
         low, high = (length_text(width) for width in self.picture.span)
         bar = QtCore.QRectF(0, 2, self.width(), 12)

@@ -33,7 +33,7 @@ def _room(found, name):
     if name not in found.clearance:
         return translate("ToolAxis", "not checked")
     value = found.clearance[name]
-    return length_text(value) if np.isfinite(value) else translate("ToolAxis", "far")
+    return length_text(value) if np.isfinite(value) else translate("ToolAxis", "nothing near")
 
 
 def _angle(y, x):
@@ -57,15 +57,15 @@ def measures(found, seconds=0.0):
              *([(translate("ToolAxis", "Machining time"), lambda: clock(seconds))] if seconds > 0 else []),
              *([(translate("ToolAxis", "Excess over ideal length"),
                  lambda: f"{100 * (found.length / found.ideal_of_cut - 1):.1f} %")] if found.ideal > 0 else []),
-             (translate("ToolAxis", "Gouge, at most"), lambda: fine_text(found.gouge)),
+             (translate("ToolAxis", "Max. gouge"), lambda: fine_text(found.gouge)),
              (translate("ToolAxis", "Cutter clearance"), lambda: _room(found, "cutter")),
              (translate("ToolAxis", "Shank clearance"), lambda: _room(found, "shank")),
              (translate("ToolAxis", "Holder clearance"), lambda: _room(found, "holder")),
-             (translate("ToolAxis", "Left to clean-up"), lambda: f"{100 * found.unreached:.1f} %"),
-             *([] if found.lead is None else [(translate("ToolAxis", "Lean from the normal, mean"),
+             (translate("ToolAxis", "Rest material"), lambda: f"{100 * found.unreached:.1f} %"),
+             *([] if found.lead is None else [(translate("ToolAxis", "Mean lean"),
                                                lambda: f"{np.degrees(found.lead) + 0.0:.2f}°")]),
              (translate("ToolAxis", "Tilt from Z"), lambda: _angle(np.hypot(*found.axis[:2]), found.axis[2])),
-             (translate("ToolAxis", "Turn about Z"), lambda: _angle(found.axis[1], found.axis[0]))]
+             (translate("ToolAxis", "Rotation about Z"), lambda: _angle(found.axis[1], found.axis[0]))]
     return rows + [(name, text() if there else "-") for name, text in texts]
 
 
@@ -102,8 +102,8 @@ def fill_baselines(table, rows):
     table : QTableWidget
     rows : sequence of toolaxis.plan.baseline.Baseline
     """
-    heads = [translate("ToolAxisPlan", "Method"), translate("ToolAxisPlan", "Axes"), translate("ToolAxis", "Passes"),
-             translate("ToolAxis", "Cutting length")]
+    heads = [translate("ToolAxisPlan", "Method"), translate("ToolAxisPlan", "Orientations"),
+             translate("ToolAxis", "Passes"), translate("ToolAxis", "Cutting length")]
     table.setVisible(bool(rows))
     table.setEditTriggers(QtWidgets.QAbstractItemView.NoEditTriggers)
     table.setSelectionMode(QtWidgets.QAbstractItemView.NoSelection)

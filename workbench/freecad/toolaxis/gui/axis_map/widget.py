@@ -28,11 +28,11 @@ def no_map(found):
     if found.lead is not None:
         return translate("ToolAxis", "No map: the axis moves along the passes.")
     if found.axis is None and any(map(is_tally, found.reasons)):
-        return translate("ToolAxis", "No map was kept of the axes that were looked at: the reasons stand below.")
+        return translate("ToolAxis", "No map was kept of the axes tested: the reasons are listed below.")
     if found.axis is None:
-        return translate("ToolAxis", "No map: no axis was looked at.")
-    return translate("ToolAxis", "No map: this axis was not looked for by itself. It is shared by sub-surfaces, "
-                                 "given, or named by the method.")
+        return translate("ToolAxis", "No map: no axis was tested.")
+    return translate("ToolAxis", "No map: this axis was not searched for by itself. It is shared by sub-surfaces, "
+                                 "given, or set by the method.")
 
 
 class HemisphereMap(QtWidgets.QWidget):
@@ -130,15 +130,15 @@ class HemisphereMap(QtWidgets.QWidget):
         where = translate("ToolAxis", "{:.0f}° from the mean normal").format(lean)
         if self._is_on_chosen(position):
             width, passes = picture.planned
-            return translate("ToolAxis", "chosen axis: strip width {}, {} passes as made").format(length_text(width),
+            return translate("ToolAxis", "chosen axis: strip width {}, {} passes computed").format(length_text(width),
                                                                                               passes)
         if picture.reason[row] == 0:
             width = length_text(picture.width[row])
             return translate("ToolAxis", "estimate: strip width {}, {:.0f} passes, {}").format(
                 width, picture.passes[row], where)
         amount = missed(picture.reason[row], picture.amount[row])
-        by = translate("ToolAxis", ", missed by {}").format(amount) if amount else ""
-        return translate("ToolAxis", "forbidden: {}{}, {}").format(reason_name(picture.reason[row]), by, where)
+        by = translate("ToolAxis", ", short by {}").format(amount) if amount else ""
+        return translate("ToolAxis", "not possible: {}{}, {}").format(reason_name(picture.reason[row]), by, where)
 
     def _is_on_chosen(self, position):
         """Whether a position lies on the mark of the chosen axis, whose passes were made."""

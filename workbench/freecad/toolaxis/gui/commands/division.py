@@ -55,8 +55,8 @@ class MergeSubSurfaces(_Command):
         """Icon and texts."""
         return {"Pixmap": str(RESOURCES / "icons" / "merge.svg"),
                 "MenuText": QT_TRANSLATE_NOOP("ToolAxis_Merge", "Merge Sub-Surfaces"),
-                "ToolTip": QT_TRANSLATE_NOOP("ToolAxis_Merge", "Puts the selected sub-surfaces of a face together and "
-                                                               "plans them again")}
+                "ToolTip": QT_TRANSLATE_NOOP("ToolAxis_Merge", "Merges the selected sub-surfaces of a face and plans "
+                                                               "them again")}
 
     def Activated(self):
         """Open the panel with the sub-surfaces put together, or say why that cannot be."""
@@ -76,14 +76,14 @@ class SplitSubSurface(_Command):
                 "MenuText": QT_TRANSLATE_NOOP("ToolAxis_Split", "Split Sub-Surface"),
                 "ToolTip": QT_TRANSLATE_NOOP(
                     "ToolAxis_Split",
-                    "Cuts the selected sub-surface apart: along a wire or sketch that is selected with it, out of the "
-                    "face where that is closed, else in the middle")}
+                    "Splits the selected sub-surface along a wire or sketch that is also selected; a closed one cuts a "
+                    "piece out; without one, in the middle")}
 
     def Activated(self):
         """Open the panel with the pieces, or say why that cannot be."""
         operations, lines = _selection()
         if len(operations) != 1 or len(lines) > 1:
-            warn(translate("ToolAxis", "Select one sub-surface in the tree, and one line that cuts it if it shall not "
-                                       "be cut in the middle."))
+            warn(translate("ToolAxis", "Select one sub-surface in the tree. To split it elsewhere than in the middle, "
+                                       "also select a line across it."))
             return
         _open(lambda: split(operations[0], lines[0] if lines else None))

@@ -29,8 +29,8 @@ class Export:
         """Open the panel, or say what is missing."""
         found = operations(FreeCAD.ActiveDocument)
         if not found:
-            warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation to write: "
-                                                  "select faces and run Plan Orientations first."))
+            warn(FreeCAD.Qt.translate("ToolAxis", "There is no planned operation to export: select faces and run Plan "
+                                                  "Orientations first."))
             return
         from freecad.toolaxis.gui.export.panel import ExportPanel
 

@@ -18,7 +18,8 @@ class ChooseMachine:
                 "MenuText": QT_TRANSLATE_NOOP("ToolAxis_Machine", "Machine"),
                 "ToolTip": QT_TRANSLATE_NOOP(
                     "ToolAxis_Machine",
-                    "Picks a machine, shows where its rotary axes stand for each operation, and its index moves"),
+                    "Selects a machine and shows the positions of its rotary axes for each operation, and its index "
+                    "moves"),
                 "Accel": "T, M"}
 
     def IsActive(self):

@@ -68,7 +68,7 @@ class ExportPanel(Panel):
         form = self.form
         file = Path(self.document.FileName) if self.document.FileName else Path.home() / self.document.Label
         form.folder.setText(str(file.with_name(f"{file.stem}-plan")))
-        form.dialect.addItem(translate("ToolAxis", "none"), "")
+        form.dialect.addItem(translate("ToolAxis", "no program"), "")
         for name, dialect in dialects().items():
             form.dialect.addItem(dialect.title, name)
         for combo in (form.machine, form.dialect):
@@ -123,7 +123,7 @@ class ExportPanel(Panel):
         form.files.clear()
         self._offer_nothing()
         if not form.folder.text().strip():
-            tell(form.message, translate("ToolAxis", "Give a folder."), bad=True)
+            tell(form.message, translate("ToolAxis", "Choose a folder."), bad=True)
             return
         dialect = form.dialect.currentData()
         machine = form.machine.currentData() if dialect else ""
@@ -221,7 +221,7 @@ class ExportPanel(Panel):
         """An operation is about to be deleted: it is not written."""
         left = [operation for operation in self.operations if operation.Name != name]
         if self.operations and not left:
-            tell(self.form.message, translate("ToolAxis", "The operations were deleted: there is nothing to write"),
+            tell(self.form.message, translate("ToolAxis", "The operations were deleted: there is nothing to export"),
                  bad=True)
         self.operations = left
         self._show()

@@ -57,7 +57,7 @@ def met_by(look, copies, progress):
     held = {}
     for row, (ways, _) in enumerate(look.rows):
         for column, way in enumerate(ways):
-            progress.report("looking for collisions", row, len(look.rows))
+            progress.report("checking for collisions", row, len(look.rows))
             held[row, column] = known.on_passes(row, way.rotary, look.operations[row].path.cl)
     played = replace(known, surroundings=tuple(known.surroundings[row] for row, _ in look.stations))
     return held, look_out(look.laid, copies, progress, played)

@@ -123,7 +123,7 @@ class MachinePanel(Panel):
         self.bar.clear()
         self.found, self.held = None, {}
         if not self.operations:
-            self._not_found(translate("ToolAxis", "The operations were deleted: there is no axis to hold"))
+            self._not_found(translate("ToolAxis", "The operations were deleted: there is no tool axis to reach"))
             return
         try:
             played = [played_from([operation])[0] for operation in self.operations]
@@ -135,7 +135,7 @@ class MachinePanel(Panel):
         self.work = BackgroundWork(lambda progress: looked_at(text, played))
         self.work.done.connect(self._looked)
         self.work.failed.connect(self._not_found)
-        tell(self.form.message, translate("ToolAxis", "Looking at all operations"))
+        tell(self.form.message, translate("ToolAxis", "Checking all operations"))
         self._show()
         self.work.start()
 
@@ -193,7 +193,7 @@ class MachinePanel(Panel):
     def _not_looked_out(self, text):
         self.work = None
         self.bar.give_up()
-        tell(self.form.message, translate("ToolAxis", "{} Collisions with the part could not be looked for: {}").format(
+        tell(self.form.message, translate("ToolAxis", "{} Collisions with the part could not be checked: {}").format(
             self.told[0], text), True)
 
     def _verdict(self):
@@ -204,7 +204,7 @@ class MachinePanel(Panel):
                 return f"{label}: {shown(self.held[key].text)}", True
         for place, row, one in self.bar.places:
             if self.found.laid.playback.at(place).between:
-                return translate("ToolAxis", "On the way from {} to {}: {}").format(
+                return translate("ToolAxis", "Index move from {} to {}: {}").format(
                     labels[row], labels[row + 1], shown(one.text)), True
             return f"{labels[row]}: {shown(one.text)}", True
         return self.told

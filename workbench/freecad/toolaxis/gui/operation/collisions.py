@@ -45,7 +45,7 @@ class Collisions:
         self.work = BackgroundWork(lambda progress: bumps(whole, path, copies, progress))
         self.work.done.connect(self._looked)
         self.work.failed.connect(self._not_looked)
-        tell(self.label, translate("ToolAxis", "Looking for collisions"))
+        tell(self.label, translate("ToolAxis", "Checking for collisions"))
         self.work.start()
 
     def stand(self, share):
@@ -103,7 +103,7 @@ class Collisions:
 
     def _not_looked(self, text):
         self.work = None
-        tell(self.label, translate("ToolAxis", "Collisions could not be looked for: {}").format(text), True)
+        tell(self.label, translate("ToolAxis", "Collisions could not be checked: {}").format(text), True)
 
     def _redden(self, wanted):
         if wanted == (self.red is not None):

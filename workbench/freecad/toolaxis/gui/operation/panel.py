@@ -75,12 +75,12 @@ class OperationPanel(Panel):
 
     def _fill(self):
         form, operation = self.form, self.operation
-        form.again.setText(translate("ToolAxis", "Compute again") if operation.Stale
+        form.again.setText(translate("ToolAxis", "Recompute") if operation.Stale
                            else translate("ToolAxisOperation", "Plan again..."))
         if operation.Stale:
             tell(form.message, stale_text(operation), bad=True)
         else:
-            told = translate("ToolAxis", "Results are up to date; verdict: {}")
+            told = translate("ToolAxis", "Results are up to date; Verify: {}")
             tell(form.message, told.format(shown(operation.Verdict)))
         seconds = operation.MachiningTime.Value
         fill(form.results, [] if self.found is None else [("", measures(self.found, seconds))])

@@ -65,7 +65,7 @@ def count_texts(passes, step_over, axes):
     """
     found = [translate("ToolAxis", "passes: {}").format(passes),
              translate("ToolAxis", "mean step-over {}").format(length_text(step_over))] if passes else []
-    return [*found, translate("ToolAxis", "axes: {}").format(axes)] if axes else found
+    return [*found, translate("ToolAxis", "orientations: {}").format(axes)] if axes else found
 
 
 def fill_tools(table, account):
@@ -83,7 +83,7 @@ def fill_tools(table, account):
     heads = [translate("ToolAxis", "Tool"), translate("ToolAxis", "Area"), translate("ToolAxis", "Time")]
     rows = [(f"T{one.number} {one.name}", percent(one.area, account.area), clock(one.seconds))
             for one in account.tools]
-    rows.append((translate("ToolAxis", "changes of tool and axis"), "", clock(account.between)))
+    rows.append((translate("ToolAxis", "tool changes and index moves"), "", clock(account.between)))
     rows.append((translate("ToolAxis", "total"), percent(account.machined, account.area), clock(account.seconds)))
     told = [translate("ToolAxis", "{}: {} operations").format(rows[i][0], one.operations)
             for i, one in enumerate(account.tools)]

@@ -116,7 +116,7 @@ class FaceList:
         """How many faces or skins there are, and of which part; empty without any."""
         things = list(dict.fromkeys(thing for thing, _ in self._faces))
         if not things:
-            return translate("ToolAxis", "none")
+            return translate("ToolAxis", "no faces")
         whole = things[0].Label if len(things) == 1 else translate("ToolAxis", "{} parts").format(len(things))
         if not self._skins:
             return translate("ToolAxis", "{} of {}").format(len(self._faces), whole)

@@ -33,7 +33,7 @@ class OrientationCurve(QtWidgets.QWidget):
         self.setMouseTracking(True)
         self.setFixedHeight(_HEIGHT)
         self.setAccessibleName(translate("ToolAxis", "Length against the number of orientations"))
-        self.setToolTip(translate("ToolAxis", "Click a point: the plan is computed again with that many axes."))
+        self.setToolTip(translate("ToolAxis", "Click a point: the plan is computed again with that many orientations."))
         self.setVisible(False)
 
     def show_options(self, options):
@@ -100,7 +100,7 @@ class OrientationCurve(QtWidgets.QWidget):
         first = self.cost(self.options[0])
         cost = self.cost(option)
         text = translate("ToolAxis", "{:.0f} s").format(cost) if self.timed else length_text(cost, 0, 0)
-        told = translate("ToolAxis", "Different axes: {}; sub-surfaces: {}; {}").format(
+        told = translate("ToolAxis", "Orientations: {}; sub-surfaces: {}; {}").format(
             option.orientations, option.sub_surfaces, text)
         if option is self.options[0] or not first > 0:
             return told
@@ -158,4 +158,4 @@ class OrientationCurve(QtWidgets.QWidget):
             text = f"{one:.0f} s" if self.timed else length_text(one, 0, 0)
             painter.drawText(box, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter, text)
         box = QtCore.QRectF(_LEFT, _HEIGHT - 14, self.width() - _LEFT - _RIGHT, 14)
-        painter.drawText(box, QtCore.Qt.AlignCenter, translate("ToolAxis", "different axes"))
+        painter.drawText(box, QtCore.Qt.AlignCenter, translate("ToolAxis", "orientations"))

@@ -12,7 +12,7 @@ translate = FreeCAD.Qt.translate
 def outcome_sentence(plan):
     """What came of a plan, and whether it is bad.
 
-    Sub-surfaces that are left to a clean-up tool, and fillets at the roots of blades, have no axis and need none: they
+    Sub-surfaces that are left as rest material, and fillets at the roots of blades, have no axis and need none: they
     are told apart from those for which none was found.
 
     Parameters
@@ -40,10 +40,10 @@ def outcome_sentence(plan):
         return translate("ToolAxis", "Every face has an axis. {} OK puts them into the document.").format(
             figures(plan)), False
     if done and done + left == count:
-        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool. {} OK puts them "
-                                     "into the document.").format(done, count, left, figures(plan)), False
+        return translate("ToolAxis", "{} of {} faces have an axis, {} are left as rest material. {} OK puts them into "
+                                     "the document.").format(done, count, left, figures(plan)), False
     if left:
-        return translate("ToolAxis", "{} of {} faces have an axis, {} are left to a clean-up tool, {} have none; the "
+        return translate("ToolAxis", "{} of {} faces have an axis, {} are left as rest material, {} have none; the "
                                      "reasons are on the tab Axis.").format(done, count, left,
                                                                             count - done - left), True
     return translate("ToolAxis", "{} of {} faces have an axis; the reasons are on the tab Axis.").format(

@@ -229,7 +229,7 @@ class PlanPanel(Panel):
             odd = size_note(dict.fromkeys(thing for thing, _ in self.fields.faces.faces))
             return (f"{odd} {told}" if odd else told), bool(odd)
         if self.computed is None:
-            return translate("ToolAxis", "Something has changed: compute again."), True
+            return translate("ToolAxis", "Inputs have changed: compute again."), True
         return outcome_sentence(plan)
 
     def _tell(self, text, bad=False):

@@ -100,7 +100,7 @@ class PlanPlayer:
         self.work = BackgroundWork(lambda progress: look_out(laid, copies, progress))
         self.work.done.connect(self._show_collisions)
         self.work.failed.connect(lambda text: self._fail(translate(
-            "ToolAxis", "Collisions could not be looked for: {}").format(text)))
+            "ToolAxis", "Collisions could not be checked: {}").format(text)))
         self.work.start()
 
     def _show_collisions(self, found):

@@ -154,9 +154,9 @@ def words_of(remedy):
             return translate("ToolAxis", "Ball end D{}").format(lengths[0])
         return translate("ToolAxis", "Bull nose D{}, R{}").format(*lengths)
     return {"regions": translate("ToolAxis", "Divide into sub-surfaces"),
-            "strategy": translate("ToolAxis", "Fixed axes"), "rack": translate("ToolAxis", "Use the general rack"),
-            "most_tools": translate("ToolAxis", "Any number of tools"),
-            "limits": translate("ToolAxis", "Without limits")}[remedy.name]
+            "strategy": translate("ToolAxis", "Use fixed axes"), "rack": translate("ToolAxis", "Use the general rack"),
+            "most_tools": translate("ToolAxis", "Allow any number of tools"),
+            "limits": translate("ToolAxis", "Remove axis limits")}[remedy.name]
 
 
 def use_remedy(inputs, remedy):

@@ -168,8 +168,8 @@ class AxisView(QtCore.QObject):
         number = self._grown
         picture, title = self.growing[number] or (None, self.titles[number])
         if picture is None:
-            return None, translate("ToolAxis", "{}: no axis looked at yet").format(title)
-        return picture, translate("ToolAxis", "{}: the axes looked at so far").format(title)
+            return None, translate("ToolAxis", "{}: no axis tested yet").format(title)
+        return picture, translate("ToolAxis", "{}: the axes tested so far").format(title)
 
     @property
     def operation_titles(self):
@@ -188,7 +188,7 @@ class AxisView(QtCore.QObject):
         if self.plan.blades is not None and op.number in self.plan.blades.copies:
             title = translate("ToolAxis", "{} (turned copy)").format(title)
         if op.number in self.left:
-            return translate("ToolAxis", "{}: left to clean-up").format(title)
+            return translate("ToolAxis", "{}: rest material").format(title)
         return title if op.done else translate("ToolAxis", "{}: no axis").format(title)
 
     def leave(self):

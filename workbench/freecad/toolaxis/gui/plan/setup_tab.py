@@ -121,8 +121,9 @@ class SetupTab:
                 if not vertex.rsplit(".", 1)[-1].startswith("Vertex"):
                     continue
                 if thing not in self.things:
-                    self.problem = translate("ToolAxis", "The vertex is not of the part that is machined: select one "
-                                                         "of {}").format(", ".join(one.Label for one in self.things))
+                    self.problem = translate(
+                        "ToolAxis", "The vertex does not belong to the part to machine: select one of {}").format(
+                            ", ".join(one.Label for one in self.things))
                     continue
                 try:
                     self._picked, self.problem = origin_from_vertex(thing, vertex), ""
@@ -188,7 +189,7 @@ class SetupTab:
     def _picked_text(self):
         """The coordinates of the picked vertex in the part's own frame."""
         if not self._picked:
-            return translate("ToolAxis", "none")
+            return translate("ToolAxis", "no vertex")
         unit, factor = shown_unit("mm")
         return f"{'; '.join(number_text(value / factor, 2, 3) for value in parse_origin(self._picked)[1])} {unit}"
 

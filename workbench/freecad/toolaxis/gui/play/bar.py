@@ -254,7 +254,7 @@ class PlayBar(QtCore.QObject):
             lines.append(line_of(near.text))
         tell(self.widgets.pointer, "\n".join(lines), bool(bodies) or near is not None)
         whole, cutting = round(self.laid.playback.seconds), round(self.laid.playback.cutting)
-        tell(self.widgets.clock, translate("ToolAxis", "{} of {}: cutting {}, moves {}").format(
+        tell(self.widgets.clock, translate("ToolAxis", "{} of {}: cutting {}, non-cutting {}").format(
             clock(moment.seconds), clock(whole), clock(cutting), clock(whole - cutting)))
 
     def _words(self, moment):
@@ -265,7 +265,7 @@ class PlayBar(QtCore.QObject):
         if moment.between:
             after = self.laid.operations[moment.operation + 1]
             if after.tool != one.tool:
-                return translate("ToolAxis", "Change of tool, and index move to {}").format(after.label)
+                return translate("ToolAxis", "Tool change and index move to {}").format(after.label)
             return translate("ToolAxis", "Index move to {}").format(after.label)
         words = {Motion.CUT: translate("ToolAxis", "{}: cutting, pass {} of {}"),
                  Motion.ENTRY: translate("ToolAxis", "{}: lead-in, pass {} of {}"),
@@ -278,7 +278,7 @@ class PlayBar(QtCore.QObject):
     def _count(self):
         """How many collisions there are, with a link to the next one, and whether that is bad."""
         if self.collisions is None:
-            return translate("ToolAxis", "Looking for collisions") if self.looking else "", False
+            return translate("ToolAxis", "Checking for collisions") if self.looking else "", False
         names = {"shank": translate("ToolAxis", "shank"), "holder": translate("ToolAxis", "holder"),
                  "machine": translate("ToolAxis", "bodies of the machine"),
                  "index moves": translate("ToolAxis", "index moves")}

@@ -85,7 +85,7 @@ class PlayPanel(Panel):
 
     def _not_looked(self, text):
         self.bar.give_up()
-        self._fail(translate("ToolAxis", "Collisions could not be looked for: {}").format(text))
+        self._fail(translate("ToolAxis", "Collisions could not be checked: {}").format(text))
 
     def _show_collisions(self, found):
         self.work = None

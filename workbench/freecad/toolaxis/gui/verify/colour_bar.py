@@ -47,7 +47,7 @@ class Scale(QtWidgets.QWidget):
         entries = [(ABOVE, translate("ToolAxis", "above {}").format(fine_text(self.most)))]
         if self.heights:
             entries += [(MISSED, translate("ToolAxis", "not reached")),
-                        (ASIDE, translate("ToolAxis", "left to clean-up"))]
+                        (ASIDE, translate("ToolAxis", "rest material"))]
         return entries
 
     def _rows(self):

@@ -116,7 +116,8 @@ class VerifyPanel(Panel):
                 record(f"freecad.toolaxis.verify({thing_of(operation)})")
         except Exception as reason:
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
-            self._tell(translate("ToolAxis", "The verdict could not be kept: {}").format(sentence(reason)), bad=True)
+            self._tell(translate("ToolAxis", "The result of Verify could not be saved: {}").format(
+                sentence(reason)), bad=True)
 
     def _ended(self, text):
         self.work = None
@@ -165,7 +166,7 @@ class VerifyPanel(Panel):
             x, y, z = (f"{v:.2f}" for v in place.point)
             worst.addItem(translate("ToolAxis", "{} at ({}, {}, {}) on face {}").format(value, x, y, z, place.face))
         if not self.places:
-            worst.addItem(translate("ToolAxis", "none"))
+            worst.addItem(translate("ToolAxis", "no points"))
         worst.blockSignals(blocked)
 
     def _zoom(self, row):
@@ -224,13 +225,13 @@ def _measures(verdict):
         return length_text(distance) if distance < _FAR else translate("ToolAxis", "over {}").format(length_text(_FAR))
 
     height = verdict.scallop_max
-    return [(translate("ToolAxis", "Highest scallop"), fine_text(height) if np.isfinite(height) else "-"),
+    return [(translate("ToolAxis", "Max. scallop height"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
-            (translate("ToolAxis", "Left to clean-up"), f"{100 * verdict.declared / verdict.area:.1f} %"),
+            (translate("ToolAxis", "Rest material"), f"{100 * verdict.declared / verdict.area:.1f} %"),
             (translate("ToolAxis", "Within {} (rest material excluded)").format(
                 fine_text(greatest_accepted(verdict, "remaining"))),
              share_text(verdict)),
-            (translate("ToolAxis", "Deepest gouge"), fine_text(verdict.gouge_max)),
+            (translate("ToolAxis", "Max. gouge"), fine_text(verdict.gouge_max)),
             (translate("ToolAxis", "Gouge allowed"), fine_text(verdict.gouge_allowed)),
             (translate("ToolAxis", "Cutter clearance"), _room("cutter")),
             (translate("ToolAxis", "Shank clearance"), _room("shank")),

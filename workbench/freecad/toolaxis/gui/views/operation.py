@@ -26,7 +26,7 @@ class OperationView(ResultView):
         if name == "Stale" and thing.Stale and not getattr(thing.Document, "Restoring", False):
             if plan_of(thing) is None:  # a plan tells by its own label what is in it
                 FreeCADGui.getDocument(thing.Document.Name).toggleTreeItem(thing, _EXPAND_PATH)
-            text = translate("ToolAxis", "{} is stale: {}. Compute it again.").format(
+            text = translate("ToolAxis", "{} is out of date: {}. Recompute it.").format(
                 plain_label(thing), list_of(thing.StaleReasons))
             FreeCADGui.getMainWindow().statusBar().showMessage(text, _TIME)
 

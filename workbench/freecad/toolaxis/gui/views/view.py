@@ -59,7 +59,7 @@ class ResultView(View, ABC):
         if name == "Stale":
             thing.ViewObject.signalChangeIcon()
         if name in ("Stale", "Label") and not any(getattr(thing.Document, state, False) for state in _BUSY):
-            mark_label(thing, f" {translate('ToolAxis', '(stale)')}" if thing.Stale else "")
+            mark_label(thing, f" {translate('ToolAxis', '(out of date)')}" if thing.Stale else "")
 
     def setupContextMenu(self, view, menu):
         """Offer to compute again what is stale.
@@ -70,7 +70,7 @@ class ResultView(View, ABC):
         menu : QMenu
         """
         if view.Object.Stale and not FreeCADGui.Control.activeDialog():
-            menu.addAction(translate("ToolAxis", "Compute again")).triggered.connect(
+            menu.addAction(translate("ToolAxis", "Recompute")).triggered.connect(
                 lambda *_: compute_again(view.Object))
 
     def onDelete(self, view, names):

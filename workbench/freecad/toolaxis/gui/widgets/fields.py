@@ -56,7 +56,7 @@ def load_form(name):
         spoilt.append(form)  # kept until another is loaded, so that it lies elsewhere
     else:
         raise RuntimeError(translate("ToolAxis", "FreeCAD has mixed up this panel with one that was closed: open it "
-                                                 "once more, or start FreeCAD anew"))
+                                                 "once more, or restart FreeCAD"))
     form.wheel = WheelScrolls(form)
     for child, kind in widgets.items():
         if issubclass(kind, QtWidgets.QComboBox | QtWidgets.QAbstractSpinBox):
