@@ -115,6 +115,9 @@ def _add_face_options(sub: _Parser) -> None:
                      help="side of the part that is clamped, in coordinates of the part: z<12.5, x>-3, or "
                           "plane:x,y,z,nx,ny,nz (a point of its plane, a direction into it); no tool goes there, and "
                           "what lies in it is not machined")
+    sub.add_argument("--after", metavar="DIR", action="append", default=[],
+                     help="folder of a plan for an earlier clamping of the part: only what it leaves is asked for, "
+                          "what was clamped in it included; may be repeated, the first clamping first")
 
 
 def _add_division_options(sub: _Parser) -> None:

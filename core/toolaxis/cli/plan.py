@@ -10,7 +10,7 @@ from toolaxis.cli.display import show_progress
 from toolaxis.cli.output import print_json, print_table, say
 from toolaxis.cli.stopping import writing
 from toolaxis.errors import REPORT_AT, Cancelled, InvalidInput, JobError
-from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, stage_folder, write_plan
+from toolaxis.job.files.plan_folder import OF_PLAN, PLAN, read_json, read_plan, stage_folder, write_plan
 from toolaxis.job.inputs.spec import Spec, parse_allowances, parse_avoided
 from toolaxis.job.inputs.tool_library import load_library
 from toolaxis.machine.library import load_machine
@@ -51,6 +51,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                                          spec.inputs.objective, _roughness(given), given.orientations,
                                          passes=given.passes, least_lean=spec.inputs.tolerance.least_lean,
                                          greatest_step_over=spec.inputs.greatest_step_over, lead=spec.inputs.lead))
+    after = _earlier_plans(given)
     with stage_folder(Path(given.out)) as stage:
         from toolaxis.cli.compile_ahead import compiling_ahead
         from toolaxis.job.planning.parallel import check_workers
@@ -69,7 +70,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
                         orientations=spec.orientations, division=given.division or None, workers=given.workers,
                         most_tools=given.most_tools, greatest_step_over=spec.inputs.greatest_step_over,
                         allowance_on=spec.inputs.allowance_on, lead=spec.inputs.lead,
-                        origin=spec.inputs.origin, stock_box=spec.inputs.stock_box,
+                        origin=spec.inputs.origin, stock_box=spec.inputs.stock_box, after=after,
                         progress=progress)
         stopped = made.outcome == "cancelled" and (asked() or not time_limit.is_up())
         if made.outcome == "cancelled" and not made.operations:
@@ -85,6 +86,15 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
         with writing():
             stage.publish(OF_PLAN)
     return _print_plan(made, given, stopped)
+
+
+def _earlier_plans(given: Namespace) -> tuple[Plan, ...]:
+    """Plans of earlier clampings."""
+    for folder in given.after:
+        if Path(folder).resolve() == Path(given.out).resolve():
+            raise InvalidInput(f"--after {folder} is the folder that this plan is written to: give it another one with "
+                               "--out")
+    return tuple(read_plan(Path(folder)) for folder in given.after)
 
 
 def _spec(given: Namespace) -> Spec:
@@ -192,6 +202,9 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     _of_failures(Path(given.out))
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
+    if made.held and made.outcome != "cancelled":
+        after = " ".join(f"--after {folder}" for folder in [*given.after, given.out])
+        say(f"toolaxis: for the other clamping: toolaxis plan {given.part} {after} --held SIDE --out DIR")
     if made.outcome == "cancelled":
         why = "" if stopped else f", as the {given.minutes:g} min of --minutes were over"
         say(f"toolaxis: stopped before all faces were done{why}; {Path(given.out) / PLAN} holds those that were")

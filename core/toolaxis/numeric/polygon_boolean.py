@@ -303,6 +303,8 @@ def join_touching(loops: Loops) -> Loops:
 
 def _not_in_both(loops: Loops, others: Loops) -> Loops:
     """Closed loops of the edges that only one of two polygons has."""
+    if not loops or not others:
+        return (*loops, *others)
     return _single_edges([*_with_corners(loops, others), *_with_corners(others, loops)])
 
 

@@ -16,6 +16,7 @@ from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.choices import ISO
 from toolaxis.plan.held_face import HeldFace
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
+from toolaxis.plan.machined_before import MachinedBefore
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.part_account import PartAccount
@@ -254,6 +255,7 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
                  "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
                  **account_document(plan.account),
                  "held": [one._asdict() for one in plan.held],
+                 "machined_before": [one._asdict() for one in plan.machined_before],
                  "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned]},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
@@ -351,5 +353,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
                 _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
                 tuple(Fault(sentence) for sentence in document.get("faults", ())),
                 held=tuple(HeldFace(**one) for one in document["part"].get("held", ())),
+                machined_before=tuple(MachinedBefore(**one)
+                                      for one in document["part"].get("machined_before", ())),
                 unplanned=tuple(UnplannedArea(**{**one, "point": tuple(one["point"])})
                                 for one in document["part"].get("unplanned", ())))

@@ -14,6 +14,7 @@ from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.choices import DIRECTIONS, FEEDRATE, FIELD, ISO, OBJECTIVES, PASSES, PLANES, SPINDLE
 from toolaxis.plan.held_face import HeldFace
+from toolaxis.plan.machined_before import MachinedBefore
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
@@ -387,6 +388,8 @@ class Plan:
         Whether the method checks the cutter on the machined face at points only; not written, as the method tells it.
     held : tuple of HeldFace
         What of the faces that were asked for lies in the side that is held: no operation is to machine it.
+    machined_before : tuple of MachinedBefore
+        What of the faces plans of earlier clampings machine: no operation is to machine it again.
     unplanned : tuple of UnplannedArea
         What else of them is in no operation, as where the plan was stopped.
     """
@@ -407,6 +410,7 @@ class Plan:
     faults: tuple[Fault, ...] = ()
     at_points: bool = False
     held: tuple[HeldFace, ...] = ()
+    machined_before: tuple[MachinedBefore, ...] = ()
     unplanned: tuple[UnplannedArea, ...] = ()
 
     def part_around(self, number: int) -> Part:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from toolaxis.plan.held_face import HeldFace
+from toolaxis.plan.machined_before import MachinedBefore
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 
@@ -28,6 +29,20 @@ def describe_held(plan: Plan) -> str:
     area = sum(one.area for one in plan.held)
     return (f"held in this clamping ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
             f"{_name_areas(plan.held)}")
+
+
+def describe_machined_before(plan: Plan) -> str:
+    """What of the faces plans of earlier clampings machine; empty where there are none.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    if not plan.machined_before:
+        return ""
+    area = sum(one.area for one in plan.machined_before)
+    return (f"machined in earlier clampings and not asked for: {area:.1f} mm2, of faces "
+            f"{_name_areas(plan.machined_before)}")
 
 
 def describe_not_begun(plan: Plan) -> str:
@@ -75,7 +90,7 @@ def describe_open(plan: Plan) -> str:
     return f"stays open: {left:.1f} of {found.area:.1f} mm2 ({100 * left / found.area:.1f} %){told}"
 
 
-def _name_areas(some: Sequence[HeldFace | UnplannedArea]) -> str:
+def _name_areas(some: Sequence[HeldFace | MachinedBefore | UnplannedArea]) -> str:
     """Faces by their labels, with the area where it is not all of one."""
     named = [one.label if one.whole else f"{one.label} ({one.area:.1f} mm2 of it)" for one in some]
     more = f" and {len(named) - _NAMED} more" if len(named) > _NAMED else ""

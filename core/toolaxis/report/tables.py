@@ -12,7 +12,7 @@ from toolaxis.plan.machine_document import rotary_of
 from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
-from toolaxis.report.areas_aside import describe_held, describe_hidden, describe_not_begun
+from toolaxis.report.areas_aside import describe_held, describe_hidden, describe_machined_before, describe_not_begun
 from toolaxis.shape.stock import format_faces
 from toolaxis.verify.component_clearance import Clearance
 from toolaxis.verify.verdict import OperationVerdict, Verdict
@@ -120,7 +120,7 @@ def plan_table(plan: Plan) -> Table:
     if plan.machine is not None:
         columns.insert(at, (f"{names}\ndeg", "left"))
     points = _POINTS if plan.at_points else ""
-    aside = (describe_not_begun(plan), describe_hidden(plan), describe_held(plan))
+    aside = (describe_not_begun(plan), describe_hidden(plan), describe_held(plan), describe_machined_before(plan))
     asked = (allowance_line(plan), step_over_line(plan), lead_line(plan), lean_line(plan), stock_line(plan))
     notes = (_of_part(plan), *aside, _BOUNDS, *asked, _ideal(plan), points, reckoning(plan), _order(plan))
     return table(title, columns, rows, "\n".join(filter(None, notes)))

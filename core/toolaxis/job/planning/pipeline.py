@@ -25,6 +25,7 @@ from toolaxis.job.inputs.spec import (
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
+from toolaxis.job.planning.earlier_clampings import join_as_before, leave_out_machined
 from toolaxis.job.planning.edit_origin import datum_of
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
@@ -80,7 +81,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
          compare: bool = False, limit: float = LIMIT, workers: int | None = None, most_tools: int | None = None,
          least_lean: float | None = None, greatest_step_over: float = 0.0,
          allowance_on: Mapping[int, float] | Sequence[Any] | str | None = None, lead: float = 0.0,
-         origin: str = "", stock_box: Sequence[float] | float | str | None = None,
+         origin: str = "", stock_box: Sequence[float] | float | str | None = None, after: Sequence[Plan] = (),
          progress: Progress = NO_PROGRESS) -> Plan:
     """Plan the machining of a part's faces, each with the tool and the fixed axis that need least time.
 
@@ -193,6 +194,9 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     stock_box : float, sequence of float or text, optional
         Margins of the box that the part is cut from, mm: one for all sides, or six for -x, +x, -y, +y, -z and +z.  The
         setup sheet tells it; axes and passes are found without it.
+    after : sequence of Plan
+        Plans of the same part in earlier clampings, the first one first: only what they leave of their faces is asked
+        for, what was held in them included, and the plan's `machined_before` tells what they machine.
     progress : Progress
 
     Returns
@@ -233,7 +237,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
     _check_tools(inputs, rack, mounting)
     request = _PlanRequest(
         inputs, rack, chosen, mounting, allowed, given, faces=faces, regions=regions, orientations=orientations,
-        obstacles=obstacles, datum=datum, compare=compare, most_tools=most_tools, workers=workers)
+        obstacles=obstacles, datum=datum, compare=compare, most_tools=most_tools, workers=workers, after=tuple(after))
     return _make_plan(part, request, progress)
 
 
@@ -255,6 +259,7 @@ class _PlanRequest:
     compare: bool
     most_tools: int | None
     workers: int | None
+    after: tuple[Plan, ...]
 
     @property
     def has_several_tools(self) -> bool:
@@ -290,14 +295,15 @@ def _make_plan(source: Any, request: _PlanRequest, progress: Progress) -> Plan:
     job = PlanningJob(part, request.rack.tools[0], inputs, request.limits, bodies,
                       datum_of(inputs, request.datum, part), request.regions, request.orientations,
                       check_workers(request.workers), machine=request.mounting, division=request.division)
-    free, in_clamping = cut_faces(part, chosen_faces)
+    left, before = leave_out_machined(chosen_faces, request.after)
+    free, in_clamping = cut_faces(part, left)
     with use_cores(request.workers):
         if request.has_several_tools:
             made = _plan_with_rack(job, free, joined.pattern, request, progress)
         else:
-            is_whole = request.faces is None and _is_untouched(part) and inputs.method in METHODS
+            is_whole = request.faces is None and not request.after and _is_untouched(part) and inputs.method in METHODS
             made = _plan_part(job, free, (is_whole, request.compare), progress)
-        ordered = _order_operations(made, progress)
+        ordered = replace(_order_operations(made, progress), machined_before=before)
         return _tell_apart(ordered, free, in_clamping)
 
 
@@ -354,6 +360,9 @@ def _join_faces(part: Part, request: _PlanRequest, progress: Progress) -> _Joine
 
     Blades are looked for where several tools plan a part of which no faces are named; else it is joined to skins then.
     """
+    if request.after:
+        _check_after(request)
+        return _JoinedPart(*join_as_before(part, request.after), None)
     faces, pattern = request.faces, None
     if request.has_several_tools and faces is None:
         _tell(progress, "looking for blades")
@@ -406,6 +415,19 @@ def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
     if chosen.in_layers:
         raise InvalidInput(f"a clamped side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
                            "leave one of both out")
+
+
+def _check_after(request: _PlanRequest) -> None:
+    """That a plan for a later clamping asks for nothing but what earlier plans left."""
+    if request.faces is not None:
+        raise InvalidInput("faces are named, and plans of earlier clampings too, which tell what is left: leave one of "
+                           "both out")
+    if request.division:
+        raise InvalidInput("sub-surfaces given by hand do not go with plans of earlier clampings: leave one of both "
+                           "out")
+    if request.strategy.in_layers:
+        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with plans of earlier clampings, which "
+                           "leave pieces of faces: take another strategy")
 
 
 def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:

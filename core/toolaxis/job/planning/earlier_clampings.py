@@ -1,0 +1,143 @@
+"""What plans of earlier clampings left of a part: all that a plan of the next clamping is to machine."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toolaxis.errors import InvalidInput
+from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons, without
+from toolaxis.plan.machined_before import MachinedBefore
+from toolaxis.plan.operation import Operation
+from toolaxis.plan.plan import Plan
+from toolaxis.shape.face import Face
+from toolaxis.shape.part import Part
+from toolaxis.skin.join import join
+
+Loops = tuple[NDArray[np.float64], ...]
+
+#: Area up to which what is left of a face is not worth a sub-surface, mm^2.
+_LEAST = 0.01
+#: Share of a face up to which areas are the same.
+_SHARE = 1e-3
+#: How far the boxes of faces may differ of parts that are the same one, in parts of the diagonal.
+_SAME = 1e-6
+
+
+def join_as_before(part: Part, earlier: Sequence[Plan]) -> tuple[Part, tuple[int, ...]]:
+    """A part with the faces joined that the last plan of an earlier clamping joined, and the numbers of its faces.
+
+    Parameters
+    ----------
+    part : Part
+        With all its faces, none joined.
+    earlier : sequence of Plan
+        Of earlier clampings, the first one first.
+
+    Returns
+    -------
+    part : Part
+    numbers : tuple of int
+        Of the faces and skins that the plan was asked for.
+
+    Raises
+    ------
+    InvalidInput
+        When a plan is one of another part, was stopped, or was asked for faces that are to be avoided now.
+    """
+    for number, plan in enumerate(earlier, 1):
+        _check_same_part(part, plan, number)
+    last = earlier[-1]
+    asked = {op.face.number for op in last.operations}
+    for rows in (last.held, last.unplanned, last.machined_before):
+        asked |= {one.face for one in rows}
+    for face in last.part.faces:
+        if face.members:
+            part = join(part, face.numbers, np.inf, np.inf)
+    # A face that a skin hides is told of by its own number.
+    numbers = sorted(face.number for face in part.faces if asked & set(face.numbers))
+    return part, tuple(numbers)
+
+
+def _check_same_part(part: Part, plan: Plan, number: int) -> None:
+    """Refuse a plan of another part, or one that was stopped."""
+    own, its = part.faces, (plan.part.original or plan.part).faces
+    same = [face.number for face in own] == [face.number for face in its] and all(
+        np.abs(one.box - other.box).max() <= _SAME * part.diagonal for one, other in zip(own, its, strict=True))
+    if not same:
+        raise InvalidInput(f"the plan of clamping {number} is one of another part: plan all clampings of one part")
+    if plan.outcome == "cancelled":
+        raise InvalidInput(f"the plan of clamping {number} was stopped before all faces were done: finish it first")
+
+
+def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],
+                       ) -> tuple[tuple[Face, ...], tuple[MachinedBefore, ...]]:
+    """What of faces no plan of an earlier clamping machines, and what these machine: all and nothing without any.
+
+    Parameters
+    ----------
+    faces : sequence of Face
+        Of the part, skins as one face each.
+    earlier : sequence of Plan
+        Of earlier clampings, the first one first.
+
+    Raises
+    ------
+    InvalidInput
+        When nothing is left of any face.
+
+    Notes
+    -----
+    An operation machines its sub-surface without the zones that it leaves.  What operations machine on faces that were
+    joined otherwise is not taken off: it is asked for once more.
+
+    **Properties**: 1. what is left and what is machined add up to the faces.
+    """
+    if not earlier:
+        return tuple(faces), ()
+    left, before = [], []
+    for face in faces:
+        done = [op for plan in earlier for op in plan.operations if op.done and op.face.numbers == face.numbers]
+        rest = _rest_of(face, done)
+        if rest is not None and rest.area >= _LEAST:
+            left.append(rest if done else face)
+        machined = face.area - (0.0 if rest is None else rest.area)
+        if done:
+            before.append(MachinedBefore(face.number, face.label, max(machined, 0.0), rest is None))
+    if not left:
+        raise InvalidInput("earlier clampings machine all that is asked for: nothing is left to plan")
+    return tuple(left), tuple(before)
+
+
+def _rest_of(face: Face, done: Sequence[Operation]) -> Face | None:
+    """What operations leave of a face; None where that is nothing."""
+    loops = face.outline
+    expected = face.area
+    for op in done:
+        # Sub-surfaces and zones were cut out of the face: they have its very corners, and edges cancel out.
+        loops = unite_polygons(without(loops, op.face.outline), _zones_of(op))
+        expected -= op.face.area - sum(zone.area for zone in op.zones if zone.at_wall)
+    rest = face.trimmed(loops) if loops else None
+    found = 0.0 if rest is None else rest.area
+    if abs(found - expected) <= max(_SHARE * face.area, _LEAST):
+        return rest
+    loops = face.outline  # sub-surfaces overlap, as those of blades that stand close may
+    for op in done:
+        loops = _take_off(loops, op)
+    return face.trimmed(loops) if loops else None
+
+
+def _zones_of(op: Operation) -> Loops:
+    """Borders of what an operation leaves of its sub-surface."""
+    return tuple(loop for zone in op.zones if zone.at_wall for loop in zone.loops)
+
+
+def _take_off(loops: Loops, op: Operation) -> Loops:
+    """What is left inside loops by an operation: all outside of its sub-surface, and the zones that it leaves."""
+    zones = _zones_of(op)
+    try:
+        _, outside = divide_nearly(loops, op.face.outline)
+        inside = divide_nearly(loops, zones)[0] if zones else ()
+    except InvalidInput:  # borders cannot be told apart: it is asked for once more
+        return loops
+    return (*outside, *inside)
