@@ -678,6 +678,10 @@
    <translation>Bearbeitet</translation>
   </message>
   <message>
+   <source>Machined within {}</source>
+   <translation>Bearbeitet innerhalb {}</translation>
+  </message>
+  <message>
    <source>Machining time</source>
    <translation>Bearbeitungszeit</translation>
   </message>
@@ -1176,10 +1180,6 @@
   <message>
    <source>Whole part</source>
    <translation>Ganzes Teil</translation>
-  </message>
-  <message>
-   <source>Within {} (rest material excluded)</source>
-   <translation>Innerhalb {} (ohne Restmaterial)</translation>
   </message>
   <message>
    <source>Work coordinates {}</source>
@@ -2507,7 +2507,7 @@ Alle außer der ersten brauchen feste Achsen.</translation>
   </message>
   <message>
    <source>any, tilt and azimuth limited</source>
-   <translation>beliebig, Neigung und Azimut begrenzt</translation>
+   <translation>beliebig, Neigung, Azimut begrenzt</translation>
   </message>
   <message>
    <source>as the CAM job makes it</source>

@@ -95,9 +95,9 @@ def test_what_needs_a_look_stands_first_and_says_why(four: Batch, page: Page) ->
     items = [re.sub(r"\s+", " ", item).strip().removeprefix("stop ") for item in page.items]
     said = {row.job: " ".join(item for item in items if item.startswith(f"{row.job}: ")) for row in four.rows}
     assert said["judged part"] == "" and len(items) == 3
-    assert "not judged" in said["dome-001"] and "incomplete" in said["dome-002"] and "failed" in said["dome-003"]
+    assert "not verified" in said["dome-001"] and "incomplete" in said["dome-002"] and "failed" in said["dome-003"]
     text = (four.folder / "report.html").read_text(encoding="utf-8")
-    assert text.index("not judged") < text.index("<table") and "out &lt;1&gt;" in text
+    assert text.index("not verified") < text.index("<table") and "out &lt;1&gt;" in text
 
 
 def test_pages_of_jobs_are_made_once_and_again_when_their_plan_changed(four: Batch, page: Page) -> None:

@@ -105,10 +105,10 @@ def test_a_judge_that_is_stopped_keeps_what_was_judged(planned: Path, tmp_path: 
     assert judged[0] in ("op01-face1", "op02-face2")[:workers] and document["operations"][0]["passed"] is True
     assert document["unjudged"] and len(judged) + len(document["unjudged"]) == 3
     for name in document["unjudged"]:
-        assert any(why.startswith(f"{name}: not judged") for why in document["reasons"])
-    assert "NOT JUDGED" in out and "not judged to the end" in verdict_of(folder)
+        assert any(why.startswith(f"{name}: not verified") for why in document["reasons"])
+    assert "NOT VERIFIED" in out and "not verified to the end" in verdict_of(folder)
     assert main(["report", str(folder)]) == 0
-    assert "not judged to the end" in (folder / "report.html").read_text()
+    assert "not verified to the end" in (folder / "report.html").read_text()
 
 
 def test_a_verdict_survives_its_pictures(planned: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,

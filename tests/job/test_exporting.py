@@ -167,7 +167,7 @@ def test_what_stands_in_the_way_of_a_file_is_told_and_nothing_is_written(folder:
     for name, colour, said in (("plan.obj", "sub-surface", r"ends in '.obj': use .step or .glb"),
                                ("plan.step", "scallop", "is for glTF only"),
                                ("plan.glb", "height", "use sub-surface, scallop or gouge"),
-                               ("plan.glb", "scallop", "needs the judge's maps: verify the plan first")):
+                               ("plan.glb", "scallop", "needs the maps of Verify: verify the plan first")):
         with pytest.raises(InvalidInput, match=said):
             export(folder, tmp_path / "out" / name, colour=colour)
     with pytest.raises(InvalidInput, match="is a folder"):

@@ -45,7 +45,7 @@ def test_program_and_sheet_appear(folder: Path, capsys: Capture) -> None:
     assert main(["post", str(folder), "--dialect", "heidenhain", "--machine", "mikron-ucp-710", "--json"]) == 0
     out = capsys.readouterr()
     assert json.loads(out.out)["files"] == [str(folder / "program-heidenhain.h"), str(folder / "setup-heidenhain.md")]
-    assert "warning: verdict on the operations: not judged yet" in out.err
+    assert "warning: verdict on the operations: not verified yet" in out.err
     assert {path.name for path in folder.iterdir()} == {*before, "program-heidenhain.h", "setup-heidenhain.md"}
     assert all((folder / name).read_bytes() == content for name, content in before.items())
     assert (folder / "program-heidenhain.h").read_text().count("PLANE SPATIAL") == 3

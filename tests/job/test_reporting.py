@@ -228,9 +228,9 @@ def test_the_same_plan_gives_the_same_bytes(whole: Path, tmp_path: Path) -> None
 
 def test_without_a_verdict_it_says_so_first(folder: Path) -> None:
     found = Page(report(folder).read_text(encoding="utf-8"))
-    assert "verdict on what was made: not judged yet" in found.text
+    assert "verdict on what was made: not verified yet" in found.text
     levels = [attributes["class"] for tag, attributes in found.tags if tag == "li"]
-    assert levels[0] == "stop" and "stop not judged: run toolaxis verify" in found.text
+    assert levels[0] == "stop" and "stop not verified: run toolaxis verify" in found.text
     assert not any(name.endswith(":scallop") for name in found.data)
 
 

@@ -12,13 +12,13 @@ def judged(*passed: bool, whole: bool = True, **more: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("verdict, word, count", [
-    (None, "not judged yet: run toolaxis verify", ""),
+    (None, "not verified yet: run toolaxis verify", ""),
     (judged(True, True, made_passed=True), "passed", "2 of 2 operations"),
     (judged(True, made_passed=True, whole=False), "passed", "1 of 1 operation"),
     (judged(True, False, made_passed=False, whole=False), "FAILED", "1 of 2 operations"),
     (judged(True, made_passed=False, whole=False), "FAILED", "1 of 1 operation"),
-    (judged(True, made_passed=False, whole=False, unjudged=["op1"]), "not judged to the end: run toolaxis verify again",
-     "1 of 2 operations"),
+    (judged(True, made_passed=False, whole=False, unjudged=["op1"]),
+     "not verified to the end: run toolaxis verify again", "1 of 2 operations"),
     (judged(False, made_passed=False, whole=False, unjudged=["op1"]), "FAILED", "0 of 2 operations"),
     (judged(made_passed=False, whole=False), "nothing was made", ""),
     (judged(True, whole=False), "FAILED", "1 of 1 operation"),

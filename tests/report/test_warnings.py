@@ -41,7 +41,7 @@ def test_the_gravest_come_first() -> None:
     assert [one.level for one in found] == sorted((one.level for one in found), key=["stop", "mind", "note"].index)
     texts = [one.text for one in found]
     assert texts[0] == "op03-face3 has no axis: a wall"
-    assert any(text.startswith("not judged") for text in texts)
+    assert any(text.startswith("not verified") for text in texts)
     assert texts.index("not checked: holder") < texts.index("op02-face2 is left as rest material: too tight")
     assert "between operations: the head collides with the table" in texts
 
@@ -55,7 +55,7 @@ def test_turned_copies_count_with_their_original() -> None:
 
 def test_a_copy_that_alone_has_no_axis_is_told() -> None:
     found = warnings_of(plan(op(1), op(2, done=False, why="a wall"), outcome="incomplete", copies={2: 1}),
-                        verdict(judged(1), passed=False, reasons=("op02-face2: no axis, nothing to judge",)))
+                        verdict(judged(1), passed=False, reasons=("op02-face2: no axis, nothing to verify",)))
     assert [one.text for one in found] == ["op02-face2 has no axis: a wall"], "the judge has nothing against the other"
 
 

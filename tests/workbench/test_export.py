@@ -65,7 +65,7 @@ def test_a_program_has_the_commands_bytes(made, tmp_path, dialect):
     operations, plan = made
     export(operations, tmp_path / "plan", Wish(dialect, MACHINE, OFFSET))
     mounting = Mounting(load_machine(MACHINE), OFFSET, plan.tools[0].gauge_length)
-    theirs = post_plan(plan, dialect, mounting, name="plan", verdict="not judged yet: run toolaxis verify")
+    theirs = post_plan(plan, dialect, mounting, name="plan", verdict="not verified yet: run toolaxis verify")
     ours = files(tmp_path / "plan")
     for name, text in theirs.items():
         assert ours[name].decode() == text, name

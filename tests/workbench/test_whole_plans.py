@@ -178,7 +178,7 @@ def test_the_headline_has_time_passes_step_over_and_axes_over_all(divided):
     widths = [op.orientation.average_strip_width for op in plan.operations]
     mean = sum(a * b for a, b in zip(lengths, widths, strict=True)) / sum(lengths)
     assert figures(plan) == (f"{clock(plan.seconds)}, passes: {count}, mean step-over {length_text(mean)}, "
-                             f"axes: {plan.orientations}.")
+                             f"orientations: {plan.orientations}.")
     half = replace(plan, operations=(first, replace(second, path=None)), outcome="cancelled")
     text, bad = outcome_sentence(half)
     assert text == f"Stopped with 1 finished. {figures(half)} OK puts what is finished into the document." and bad

@@ -228,7 +228,7 @@ def _add_verify(commands: "argparse._SubParsersAction[_Parser]") -> None:
     sub.add_argument("folder", metavar="DIR", help="folder that toolaxis plan wrote")
     sub.add_argument("--no-pictures", action="store_true", help="write no pictures")
     sub.add_argument("--workers", type=int, metavar="N",
-                     help="cores to judge and draw with; all of them unless given")
+                     help="cores to verify and draw with; all of them unless given")
     sub.add_argument("--json", action="store_true", help="machine-readable result on stdout")
     sub.set_defaults(module="toolaxis.cli.verify")
 

@@ -70,7 +70,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
     if plan.outcome == "cancelled":
         say("toolaxis: the plan was cancelled before all sub-surfaces were done")
     if verdict.unjudged:
-        say(f"toolaxis: stopped: {len(verdict.operations)} operations were judged, {len(verdict.unjudged)} were not; "
+        say(f"toolaxis: stopped: {len(verdict.operations)} operations were verified, {len(verdict.unjudged)} were not; "
             f"{folder / 'verdict.json'} holds those that were, and is no verdict on the plan")
         return 130
     return 0 if passes(plan, verdict) else 1

@@ -66,7 +66,7 @@ def travel_excess(machine: Machine, points: ArrayLike, axis: ArrayLike, tool_len
     rows = as_rows(points, 3, "points")
     one = as_rows(axis, 3, "tool axis")
     if len(one) != 1:
-        raise InvalidInput(f"{len(one)} tool axes: travel is judged for one fixed axis")
+        raise InvalidInput(f"{len(one)} tool axes: travel is checked for one fixed axis")
     found = inverse(machine, rows, np.repeat(one, len(rows), axis=0), tool_length, table_from_part)
     turning = rotary_angles(machine, one, table_from_part=table_from_part).within[0]
     out = [linear.excess(found.joints[:, :, i]).max(axis=0) for i, linear in enumerate(machine.linear)]

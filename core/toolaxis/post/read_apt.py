@@ -149,7 +149,8 @@ class _Reading:
         elif word == "MSYS":
             self._take_frame(number, arguments)
         elif first not in _IGNORED:
-            raise InvalidInput(f"CL line {number}: {word} is not understood: only straight motion (GOTO) can be judged")
+            raise InvalidInput(f"CL line {number}: {word} is not understood: only straight motion (GOTO) can be "
+                               "verified")
 
     def take_run(self, numbers: list[int], arguments: list[str]) -> None:
         """Take in GOTO statements that follow each other: at once where each is whole, else one by one."""

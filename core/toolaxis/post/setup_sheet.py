@@ -22,7 +22,7 @@ _PATTERNS = {PLANES: "along parallel planes that contain the tool axis",
              FIELD: "along the levels of a field, as far apart as their strips are wide"}
 
 
-def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "not judged yet") -> str:
+def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "not verified yet") -> str:
     """The setup sheet of a program.
 
     Parameters
@@ -49,7 +49,7 @@ def sheet_text(program: Program, dialect: Dialect, file: str, verdict: str = "no
     return "\n\n".join(parts)
 
 
-def moving_sheet_text(program: Program, control: TipControl, file: str, verdict: str = "not judged yet") -> str:
+def moving_sheet_text(program: Program, control: TipControl, file: str, verdict: str = "not verified yet") -> str:
     """The setup sheet of a program whose axis moves.
 
     Parameters

@@ -372,7 +372,7 @@ def _measured(found: Mapping[str, Clearance | str]) -> str:
 def _verdict_row(op: Operation, inputs: PlanInputs, found: OperationVerdict | None) -> list[str]:
     row = _operation_row(op, inputs)
     if found is None:
-        return [*row, "-", "-", "-", "NOT JUDGED" if op.done else "NO AXIS"]
+        return [*row, "-", "-", "-", "NOT VERIFIED" if op.done else "NO AXIS"]
     if not found.measured:
         return [*row, "-", "-", "-", "FAIL"]
     row[6:8] = [number(found.gouge_max, 4), _measured(found.clearance)]

@@ -15,10 +15,10 @@ def name_verdict(verdict: Mapping[str, Any] | None) -> str:
         The document of verdict.json; None where the plan was not judged.
     """
     if verdict is None:
-        return "not judged yet: run toolaxis verify"
+        return "not verified yet: run toolaxis verify"
     failed = any(not op["passed"] for op in verdict["operations"])
     if verdict.get("unjudged") and not failed:
-        return "not judged to the end: run toolaxis verify again"
+        return "not verified to the end: run toolaxis verify again"
     if not verdict["operations"]:
         return "nothing was made"
     # A document of an earlier version knows only of the plan as a whole.

@@ -79,7 +79,7 @@ def _of_operations(plan: Plan) -> tuple[list[Warning], list[Warning]]:
 
 def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
     if verdict is None:
-        return [Warning("stop", "not judged: run toolaxis verify on this folder before anything is machined")]
+        return [Warning("stop", "not verified: run toolaxis verify on this folder before anything is machined")]
     found = []
     failed = {op["name"] for op in verdict["operations"] if not op["passed"]}
     if failed:
@@ -90,7 +90,7 @@ def _of_verdict(plan: Plan, verdict: Mapping[str, Any] | None) -> list[Warning]:
         found.append(Warning("stop", f"the verdict says nothing of {', '.join(unjudged)}: run toolaxis verify again"))
     for text in verdict["reasons"]:
         name, _, rest = text.partition(": ")
-        if "not checked" not in rest and not rest.startswith(("no axis, nothing to judge", "not judged")):
+        if "not checked" not in rest and not rest.startswith(("no axis, nothing to verify", "not verified")):
             found.append(Warning("stop" if name in failed else "note", text))
     return found
 

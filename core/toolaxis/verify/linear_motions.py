@@ -59,7 +59,7 @@ class Motions:
 
 def _check_motions(tips: ArrayLike, axes: ArrayLike, kind: ArrayLike) -> tuple[Array, Array, NDArray[np.int8]]:
     if np.size(tips) == 0:
-        raise InvalidInput("the cutter location data holds no point: nothing can be judged")
+        raise InvalidInput("the cutter location data holds no point: nothing can be verified")
     tip, axis = as_rows(tips, 3, "tool tip"), as_rows(axes, 3, "tool axis")
     motion = np.asarray(kind, dtype=np.int8).reshape(-1)
     if len(axis) != len(tip) or len(motion) != len(tip):

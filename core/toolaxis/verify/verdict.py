@@ -177,7 +177,7 @@ class Verdict:
     def reasons(self) -> tuple[str, ...]:
         """Sentences of all operations, each led by its name."""
         return (*(f"{op.name}: {reason}" for op in self.operations for reason in op.reasons),
-                *(f"{name}: not judged: stopped before" for name in self.unjudged))
+                *(f"{name}: not verified: stopped before" for name in self.unjudged))
 
 
 def verify(tasks: Sequence[VerificationTask], *, spacing: float | None = None, threads: int = 1,

@@ -201,11 +201,11 @@ def test_the_growing_map_says_whose_it_is(desk, part_file):
     timer.timeout.connect(lambda: seen.append(form.cost.text()))
     timer.start()
     desk.press(form.compute)
-    desk.wait(lambda: any("looked at so far" in text for text in seen) or form.compute.isEnabled(), "the map grows")
+    desk.wait(lambda: any("tested so far" in text for text in seen) or form.compute.isEnabled(), "the map grows")
     desk.shot("59-growing-title")
     desk.wait(lambda: form.compute.isEnabled(), "the computation ends")
     timer.stop()
-    told = {text.split(":")[0] for text in seen if "looked at so far" in text}
+    told = {text.split(":")[0] for text in seen if "tested so far" in text}
     assert told and told <= set(titles), (told, titles)
-    assert "looked at so far" not in form.cost.text()
+    assert "tested so far" not in form.cost.text()
     desk.shot("60-several-faces")

@@ -226,7 +226,7 @@ def machine_seen(walk):
     form = desk.form("ToolAxisMachine")
     form.machine.setCurrentIndex(form.machine.findData(MACHINE))
     form.offsetZ.setValue(HEIGHT)
-    desk.wait(lambda: form.angles.isEnabled() and "Looking" not in form.message.text(), "all are looked at", 300.0)
+    desk.wait(lambda: form.angles.isEnabled() and "Checking" not in form.message.text(), "all are looked at", 300.0)
     desk.pump(1.0)
     assert "can be reached" in form.message.text(), form.message.text()
     assert form.angles.rowCount() == len([one for one in walk.operations if one.Motions])

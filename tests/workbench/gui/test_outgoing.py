@@ -250,7 +250,7 @@ def machine_panel(desk, name, offset):
     form.machine.setCurrentIndex(form.machine.findData(name))
     for spin, value in zip((form.offsetX, form.offsetY, form.offsetZ), offset, strict=True):
         spin.setValue(value)
-    desk.wait(lambda: form.angles.isEnabled() and "Looking" not in form.message.text(), "all operations are looked at")
+    desk.wait(lambda: form.angles.isEnabled() and "Checking" not in form.message.text(), "all operations are looked at")
     return form
 
 

@@ -18,7 +18,7 @@ def opened(desk, *chosen):
 
 
 def looked(form):
-    return form.met.text() and not form.met.text().startswith("Looking")
+    return form.met.text() and not form.met.text().startswith("Checking")
 
 
 def closed(desk):

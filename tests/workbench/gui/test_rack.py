@@ -309,7 +309,7 @@ def test_from_the_rack_to_a_program_and_back(desk, grooved, form, remembered, tm
     assert not form.growthNote.isVisible()
     assert table.model().headerData(1, desk.qt.Qt.Horizontal) == "Area"
     assert " machined" in form.message.text() and "with 2 of 2 tools, passes: " in form.message.text()
-    assert "mean step-over " in form.message.text() and "axes: " in form.message.text()
+    assert "mean step-over " in form.message.text() and "orientations: " in form.message.text()
     assert "OK puts the plan into the document" in form.message.text()
     assert [desk.text(table, row) for row in range(2)] == ["T1 Ball D20, 60 out", "T7 Ball D6, 40 out"]
     assert not form.lock.isVisible() and not form.turnFeed.isVisible()

@@ -75,7 +75,7 @@ def test_picture_and_share_say_the_same(desk, planned):
     verdict = panel.found[0][0]
     one, limit = verdict.maps[0], verdict.scallop_limit
     names = [form.results.verticalHeaderItem(k).text() for k in range(form.results.rowCount())]
-    assert "Within 0.05100 mm (rest material excluded)" in names and panel.scale.most == pytest.approx(0.051)
+    assert "Machined within 0.05100 mm" in names and panel.scale.most == pytest.approx(0.051)
     assert orange(verdict, "remaining") == 0 and share_text(verdict) == "100.00 %"
     border, inner = np.flatnonzero(one.border)[0], int(np.argmin(np.where(one.weight > 0, one.weight, np.inf)))
     seen = changed(verdict, "remaining", border, 2 * limit)

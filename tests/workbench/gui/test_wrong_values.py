@@ -29,7 +29,7 @@ def busy(form):
     """Whether something is computed for a form."""
     stop = getattr(form, "stop", None)
     return (stop is not None and stop.isEnabled()) or any(
-        word in form.message.text() for word in ("Looking", "Reading the passes"))
+        word in form.message.text() for word in ("Checking", "Reading the passes"))
 
 
 def run(desk, command):

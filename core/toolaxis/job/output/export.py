@@ -118,7 +118,7 @@ def _scene(plan: Plan, colour: str, views: "dict[str, RestMaterialView]") -> Any
     if colour not in COLOURINGS:
         raise InvalidInput(f"colour is {colour!r}: use {', '.join(COLOURINGS[:-1])} or {COLOURINGS[-1]}")
     if colour != COLOURINGS[0] and not views:
-        raise InvalidInput(f"colour {colour!r} needs the judge's maps: verify the plan first")
+        raise InvalidInput(f"colour {colour!r} needs the maps of Verify: verify the plan first")
     try:
         from toolaxis.report.figures.mesh_scene import plan_scene
     except ImportError as reason:

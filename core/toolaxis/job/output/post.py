@@ -23,7 +23,7 @@ from toolaxis.report.verdict_words import FAILED, name_verdict
 
 
 def post_plan(plan: Plan, dialect: str, mounting: Mounting | None = None, options: Options | None = None,
-              *, name: str = "toolaxis", verdict: str = "not judged yet") -> dict[str, str]:
+              *, name: str = "toolaxis", verdict: str = "not verified yet") -> dict[str, str]:
     """The files of a plan in a dialect, by name.
 
     Parameters

@@ -63,7 +63,7 @@ def verify(plan: Plan, *, spacing: float | None = None, threads: int = 2, worker
     """
     if not isinstance(plan, Plan):
         raise InvalidInput(f"verify takes the Plan that toolaxis.plan made, not a {type(plan).__name__}: the command "
-                           "toolaxis verify judges a folder")
+                           "toolaxis verify checks a folder")
     with activate_progress(progress), tempfile.TemporaryDirectory(prefix="toolaxis-") as folder:
         write_plan(plan, Path(folder))
         return verify_plan(read_plan(Path(folder)), spacing=spacing, threads=threads, workers=check_workers(workers),
@@ -326,7 +326,7 @@ def _reasons(plan: Plan, verdict: Verdict) -> list[str]:
     without_path = [op for op in plan.operations if op.path is None]
     missing = [op.name for op in without_path if outcome_of([op], plan.blades) != "complete"]
     return [*verdict.reasons,
-            *(f"{name}: no axis, nothing to judge" for name in missing),
+            *(f"{name}: no axis, nothing to verify" for name in missing),
             *(f"between operations: {why}" for why in plan.in_the_way),
             *(f"the plan: {why.sentence}" for why in plan.faults)]
 

@@ -75,7 +75,7 @@ def _figures(records: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
              ("cutting length", f"{number(sum(record['length'] for record in planned) / 1000, 1)} m"),
              ("time", clock(sum(record["seconds"] for record in planned)))]
     judged = [record["verdict"] for record in planned if record["verdict"]]
-    return [*found, ("judged", f"{len(judged)} of {len(records)} jobs")]
+    return [*found, ("verified", f"{len(judged)} of {len(records)} jobs")]
 
 
 def _job(record: Mapping[str, Any], leaf: JobPage) -> dict[str, Any]:

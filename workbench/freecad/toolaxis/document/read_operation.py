@@ -49,7 +49,7 @@ class OperationRecord:
 
         passes = child(operation, "Path::Feature")
         if passes is None or len(passes.Path.Commands) < 2:
-            raise InvalidInput(f"'{operation.Label}' has no passes to judge: recompute it first")
+            raise InvalidInput(f"'{operation.Label}' has no passes to verify: recompute it first")
         path = read_back(passes, operation.Motions, operation.Starts)
         matrix = matrix_of(passes.Placement)
         found = replace(orientation_from(json.loads(operation.AxisMap)), axis=matrix[:3, 2])

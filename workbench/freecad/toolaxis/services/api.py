@@ -86,7 +86,7 @@ def verification(operation):
     Raises
     ------
     InvalidInput
-        When there is nothing to judge.
+        When there is nothing to verify.
     """
     from toolaxis.errors import InvalidInput
 
@@ -246,7 +246,7 @@ def verify(operation, progress=None):
     Raises
     ------
     ToolAxisError
-        In one sentence, where there is nothing to judge.
+        In one sentence, where there is nothing to verify.
     """
     verdicts = verification(operation_of(operation))(progress_of(progress)).operations
     keep_verdict(operation, verdicts)

@@ -358,8 +358,8 @@ def _datum(made, source):
 def _verdict(operations):
     """What is known of operations, as the setup sheet says it."""
     found = {operation.Verdict for operation in operations if operation.Motions}
-    return _JUDGED.get(found.pop(), "not judged yet: run toolaxis verify") if len(found) == 1 else (
-        "FAILED" if "failed" in found else "not judged yet: run toolaxis verify")
+    return _JUDGED.get(found.pop(), "not verified yet: run toolaxis verify") if len(found) == 1 else (
+        "FAILED" if "failed" in found else "not verified yet: run toolaxis verify")
 
 
 def _write(plan, folder, wish, told):

@@ -228,7 +228,7 @@ def _measures(verdict):
     return [(translate("ToolAxis", "Max. scallop height"), fine_text(height) if np.isfinite(height) else "-"),
             (translate("ToolAxis", "Scallop limit"), fine_text(verdict.scallop_limit)),
             (translate("ToolAxis", "Rest material"), f"{100 * verdict.declared / verdict.area:.1f} %"),
-            (translate("ToolAxis", "Within {} (rest material excluded)").format(
+            (translate("ToolAxis", "Machined within {}").format(
                 fine_text(greatest_accepted(verdict, "remaining"))),
              share_text(verdict)),
             (translate("ToolAxis", "Max. gouge"), fine_text(verdict.gouge_max)),
