@@ -116,8 +116,8 @@ def _add_face_options(sub: _Parser) -> None:
                           "plane:x,y,z,nx,ny,nz (a point of its plane, a direction into it); no tool goes there, and "
                           "what lies in it is not machined")
     sub.add_argument("--after", metavar="DIR", action="append", default=[],
-                     help="folder of a plan for an earlier clamping of the part: only what it leaves is asked for, "
-                          "what was clamped in it included; may be repeated, the first clamping first")
+                     help="folder of a plan for an earlier setup of the part: only what it leaves is asked for, "
+                          "what was clamped in it included; may be repeated, the first setup first")
 
 
 def _add_division_options(sub: _Parser) -> None:

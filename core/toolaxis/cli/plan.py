@@ -89,7 +89,7 @@ def run(given: Namespace, asked: Callable[[], bool]) -> int:
 
 
 def _earlier_plans(given: Namespace) -> tuple[Plan, ...]:
-    """Plans of earlier clampings."""
+    """Plans of earlier setups."""
     for folder in given.after:
         if Path(folder).resolve() == Path(given.out).resolve():
             raise InvalidInput(f"--after {folder} is the folder that this plan is written to: give it another one with "
@@ -204,7 +204,7 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
     if made.held and made.outcome != "cancelled":
         after = " ".join(f"--after {folder}" for folder in [*given.after, given.out])
-        say(f"toolaxis: for the other clamping: toolaxis plan {given.part} {after} --held SIDE --out DIR")
+        say(f"toolaxis: for the other setup: toolaxis plan {given.part} {after} --held SIDE --out DIR")
     if made.outcome == "cancelled":
         why = "" if stopped else f", as the {given.minutes:g} min of --minutes were over"
         say(f"toolaxis: stopped before all faces were done{why}; {Path(given.out) / PLAN} holds those that were")

@@ -389,7 +389,7 @@ class Plan:
     held : tuple of HeldFace
         What of the faces that were asked for lies in the side that is held: no operation is to machine it.
     machined_before : tuple of MachinedBefore
-        What of the faces plans of earlier clampings machine: no operation is to machine it again.
+        What of the faces plans of earlier setups machine: no operation is to machine it again.
     unplanned : tuple of UnplannedArea
         What else of them is in no operation, as where the plan was stopped.
     """

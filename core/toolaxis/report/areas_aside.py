@@ -32,7 +32,7 @@ def describe_held(plan: Plan) -> str:
 
 
 def describe_machined_before(plan: Plan) -> str:
-    """What of the faces plans of earlier clampings machine; empty where there are none.
+    """What of the faces plans of earlier setups machine; empty where there are none.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def describe_machined_before(plan: Plan) -> str:
     if not plan.machined_before:
         return ""
     area = sum(one.area for one in plan.machined_before)
-    return (f"machined in earlier clampings and not asked for: {area:.1f} mm2, of faces "
+    return (f"machined in earlier setups and not asked for: {area:.1f} mm2, of faces "
             f"{_name_areas(plan.machined_before)}")
 
 

@@ -25,7 +25,7 @@ from toolaxis.job.inputs.spec import (
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
-from toolaxis.job.planning.earlier_clampings import join_as_before, leave_out_machined
+from toolaxis.job.planning.earlier_setups import join_as_before, leave_out_machined
 from toolaxis.job.planning.edit_origin import datum_of
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
@@ -195,7 +195,7 @@ def plan(part: Any, tool: ToolSource | Sequence[ToolSource] | None = None, scall
         Margins of the box that the part is cut from, mm: one for all sides, or six for -x, +x, -y, +y, -z and +z.  The
         setup sheet tells it; axes and passes are found without it.
     after : sequence of Plan
-        Plans of the same part in earlier clampings, the first one first: only what they leave of their faces is asked
+        Plans of the same part in earlier setups, the first one first: only what they leave of their faces is asked
         for, what was held in them included, and the plan's `machined_before` tells what they machine.
     progress : Progress
 
@@ -418,15 +418,14 @@ def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
 
 
 def _check_after(request: _PlanRequest) -> None:
-    """That a plan for a later clamping asks for nothing but what earlier plans left."""
+    """That a plan for a later setup asks for nothing but what earlier plans left."""
     if request.faces is not None:
-        raise InvalidInput("faces are named, and plans of earlier clampings too, which tell what is left: leave one of "
+        raise InvalidInput("faces are named, and plans of earlier setups too, which tell what is left: leave one of "
                            "both out")
     if request.division:
-        raise InvalidInput("sub-surfaces given by hand do not go with plans of earlier clampings: leave one of both "
-                           "out")
+        raise InvalidInput("sub-surfaces given by hand do not go with plans of earlier setups: leave one of both out")
     if request.strategy.in_layers:
-        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with plans of earlier clampings, which "
+        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with plans of earlier setups, which "
                            "leave pieces of faces: take another strategy")
 
 

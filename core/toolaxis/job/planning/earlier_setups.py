@@ -1,4 +1,4 @@
-"""What plans of earlier clampings left of a part: all that a plan of the next clamping is to machine."""
+"""What plans of earlier setups left of a part: all that a plan of the next one is to machine."""
 
 from collections.abc import Sequence
 
@@ -25,14 +25,14 @@ _SAME = 1e-6
 
 
 def join_as_before(part: Part, earlier: Sequence[Plan]) -> tuple[Part, tuple[int, ...]]:
-    """A part with the faces joined that the last plan of an earlier clamping joined, and the numbers of its faces.
+    """A part with the faces joined that the last plan of an earlier setup joined, and the numbers of its faces.
 
     Parameters
     ----------
     part : Part
         With all its faces, none joined.
     earlier : sequence of Plan
-        Of earlier clampings, the first one first.
+        Of earlier setups, the first one first.
 
     Returns
     -------
@@ -65,21 +65,21 @@ def _check_same_part(part: Part, plan: Plan, number: int) -> None:
     same = [face.number for face in own] == [face.number for face in its] and all(
         np.abs(one.box - other.box).max() <= _SAME * part.diagonal for one, other in zip(own, its, strict=True))
     if not same:
-        raise InvalidInput(f"the plan of clamping {number} is one of another part: plan all clampings of one part")
+        raise InvalidInput(f"the plan of setup {number} is one of another part: plan all setups of one part")
     if plan.outcome == "cancelled":
-        raise InvalidInput(f"the plan of clamping {number} was stopped before all faces were done: finish it first")
+        raise InvalidInput(f"the plan of setup {number} was stopped before all faces were done: finish it first")
 
 
 def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],
                        ) -> tuple[tuple[Face, ...], tuple[MachinedBefore, ...]]:
-    """What of faces no plan of an earlier clamping machines, and what these machine: all and nothing without any.
+    """What of faces no plan of an earlier setup machines, and what these machine: all and nothing without any.
 
     Parameters
     ----------
     faces : sequence of Face
         Of the part, skins as one face each.
     earlier : sequence of Plan
-        Of earlier clampings, the first one first.
+        Of earlier setups, the first one first.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],
         if done:
             before.append(MachinedBefore(face.number, face.label, max(machined, 0.0), rest is None))
     if not left:
-        raise InvalidInput("earlier clampings machine all that is asked for: nothing is left to plan")
+        raise InvalidInput("earlier setups machine all that is asked for: nothing is left to plan")
     return tuple(left), tuple(before)
 
 

@@ -1,4 +1,4 @@
-"""A part that one clamping cannot serve: what the first one leaves is planned in the next, no more and no less."""
+"""A part that one setup cannot serve: what the first one leaves is planned in the next, no more and no less."""
 
 import json
 from dataclasses import replace
@@ -54,7 +54,7 @@ def second(part: ta.Part, first: Plan) -> Plan:
     return made(part, held="x>29", after=[first])
 
 
-def test_the_second_clamping_machines_what_the_first_one_left(part: ta.Part, first: Plan, second: Plan) -> None:
+def test_the_second_setup_machines_what_the_first_one_left(part: ta.Part, first: Plan, second: Plan) -> None:
     whole = part.face(1).area
     assert area_of(first) == pytest.approx(whole, rel=1e-6) and area_of(second) == pytest.approx(whole, rel=1e-6)
     (before,) = second.machined_before
@@ -112,9 +112,9 @@ def test_several_tools_and_a_skin(tmp_path: Path) -> None:
 
 def test_what_does_not_go_together_is_refused_with_a_sentence(part: ta.Part, first: Plan) -> None:
     other = ta.Part.from_faces([patch(1, 0, 31)])
-    for words, asked in (("the plan of clamping 1 is one of another part", {"part": other, "after": [first]}),
-                         ("the plan of clamping 1 was stopped", {"after": [replace(first, outcome="cancelled")]}),
-                         ("faces are named, and plans of earlier clampings too", {"after": [first], "faces": [1]})):
+    for words, asked in (("the plan of setup 1 is one of another part", {"part": other, "after": [first]}),
+                         ("the plan of setup 1 was stopped", {"after": [replace(first, outcome="cancelled")]}),
+                         ("faces are named, and plans of earlier setups too", {"after": [first], "faces": [1]})):
         with pytest.raises(InvalidInput, match=words):
             made(**{"part": part, **asked})
 
@@ -130,10 +130,10 @@ def test_the_command_plans_both(tmp_path: Path, capsys: pytest.CaptureFixture[st
     one, two = str(tmp_path / "one"), str(tmp_path / "two")
     assert main([*words, "--held", "x<9", "--out", one]) == 0
     out = capsys.readouterr()
-    assert f"for the other clamping: toolaxis plan {words[1]} --after {one} --held SIDE --out DIR" in out.out + out.err
+    assert f"for the other setup: toolaxis plan {words[1]} --after {one} --held SIDE --out DIR" in out.out + out.err
     assert main([*words, "--held", "x>20", "--after", one, "--out", two]) == 0
     out = capsys.readouterr()
-    assert "machined in earlier clampings and not asked for:" in out.out + out.err
+    assert "machined in earlier setups and not asked for:" in out.out + out.err
     assert main(["verify", two, "--no-pictures"]) == 0
     assert main([*words, "--after", one, "--out", one]) == 2
     out = capsys.readouterr()
