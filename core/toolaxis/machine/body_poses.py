@@ -69,9 +69,13 @@ def standing(machine: Machine, rotary: ArrayLike, table_from_part: ArrayLike | N
     the tool does in `toolaxis.machine.kinematics.forward`.
     """
     part_from = part_from_bed(machine, rotary, table_from_part)
-    return [BodyPose(body, body.convex.moved(part_from @ bed_from_body(machine, body.carried, rotary)),
-                     part_from[:3, :3] @ machine.directions @ axes_carrying(machine, body.carried))
-            for body in machine.bodies]
+    directions = part_from[:3, :3] @ machine.directions
+    poses = []
+    for body in machine.bodies:
+        part_from_body = part_from @ bed_from_body(machine, body.carried, rotary)
+        carrier = directions @ axes_carrying(machine, body.carried)
+        poses.append(BodyPose(body, body.convex.moved(part_from_body), carrier))
+    return poses
 
 
 def meeting_at(machine: Machine, rotary: Array, points: Array, length: float, table_from_part: ArrayLike | None,
@@ -95,26 +99,39 @@ def meeting_at(machine: Machine, rotary: Array, points: Array, length: float, ta
         The least over all points for each pair of bodies, mm.
     names : list of k pairs of str
     """
-    count, p = len(rotary), len(points)
-    at = linear_coordinates(machine, np.tile(points, (count, 1)), np.repeat(rotary, p, axis=0), length, table_from_part)
-    row = np.repeat(np.arange(count), p)
-    stands = {name: bed_from_body(machine, name, rotary)
-              for name in {body.carried for body in machine.bodies}}
+    count, tips = len(rotary), len(points)
+    # Every tip at all rotary angles, those of one row of angles together.
+    row = np.repeat(np.arange(count), tips)
+    every_tip = np.tile(points, (count, 1))
+    linear = linear_coordinates(machine, every_tip, rotary[row], length, table_from_part)
+    carriers = {body.carried for body in machine.bodies}
+    bed_from = {name: bed_from_body(machine, name, rotary) for name in carriers}
     found, names = [], []
-    for one, other in _pairs(machine):
-        moving = one.convex.moved(stands[one.carried]).rows(row)
-        still = other.convex.moved(stands[other.carried]).rows(row)
-        ways = places(at @ axes_carrying(machine, one.carried) @ machine.directions.T)
-        found.append(separation([moving, ways], [still]).reshape(count, p).min(axis=1))
-        names.append((one.name, other.name))
+    for pair in _pairs(machine):
+        spindle, table = pair.spindle_side, pair.table_side
+        moving = spindle.convex.moved(bed_from[spindle.carried]).rows(row)
+        still = table.convex.moved(bed_from[table.carried]).rows(row)
+        ways = places(linear @ axes_carrying(machine, spindle.carried) @ machine.directions.T)
+        distances = separation([moving, ways], [still]).reshape(count, tips)
+        found.append(distances.min(axis=1))
+        names.append((spindle.name, table.name))
     return np.array(found).reshape(len(found), count).T, names
 
 
-def _pairs(machine: Machine) -> list[tuple[MachineBody, MachineBody]]:
-    """Bodies of the spindle's side with those of the table's; what the first linear axis carries slides on the bed."""
-    return [(one, other) for one in machine.bodies for other in machine.bodies
-            if not beside_part(machine, one) and beside_part(machine, other)
-            and not (other.carried == BED and one.carried == machine.linear[0].name)]
+class _BodyPair(NamedTuple):
+    """A body on the spindle's side and one on the table's that must not meet."""
+
+    spindle_side: MachineBody
+    table_side: MachineBody
+
+
+def _pairs(machine: Machine) -> list[_BodyPair]:
+    """All bodies of the one side with all of the other; what the first linear axis carries slides on the bed."""
+    on_table = [body for body in machine.bodies if beside_part(machine, body)]
+    on_spindle = [body for body in machine.bodies if not beside_part(machine, body)]
+    slide = machine.linear[0].name
+    return [_BodyPair(one, other) for one in on_spindle for other in on_table
+            if not (other.carried == BED and one.carried == slide)]
 
 
 def axes_carrying(machine: Machine, name: str) -> Array:
@@ -127,7 +144,11 @@ def axes_carrying(machine: Machine, name: str) -> Array:
         Of the axis, or "bed".
     """
     linear = [axis.name for axis in machine.linear]
-    count = linear.index(name) + 1 if name in linear else 3 * (name in {axis.name for axis in machine.head})
+    head = [axis.name for axis in machine.head]
+    if name in linear:
+        count = linear.index(name) + 1
+    else:
+        count = 3 if name in head else 0
     return np.diag(np.arange(3) < count).astype(float)
 
 
@@ -144,7 +165,8 @@ def bed_from_body(machine: Machine, name: str, rotary: ArrayLike) -> Array:
     """
     angles = np.atleast_1d(np.asarray(rotary, dtype=float))
     matrix = np.broadcast_to(np.eye(4), (*angles.shape[:-1], 4, 4))
-    table, head = [axis.name for axis in machine.table], [axis.name for axis in machine.head]
+    table = [axis.name for axis in machine.table]
+    head = [axis.name for axis in machine.head]
     if name in table:
         for k in reversed(range(table.index(name), len(table))):
             matrix = matrix @ _turn(machine.table[k], -angles[..., k])
@@ -159,8 +181,9 @@ def _turn(axis: RotaryAxis, angles: ArrayLike) -> Array:
     angle = np.asarray(angles, dtype=float)[..., None, None]
     x, y, z = axis.direction
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
     matrix = np.zeros((*angle.shape[:-2], 4, 4))
-    matrix[..., :3, :3] = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    matrix[..., :3, :3] = turn
     matrix[..., :3, 3] = axis.point - matrix[..., :3, :3] @ axis.point
     matrix[..., 3, 3] = 1.0
     return matrix

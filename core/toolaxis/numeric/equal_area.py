@@ -1,5 +1,7 @@
 """Lambert's equal-area map of a hemisphere of directions onto the unit disc, there and back."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -8,11 +10,21 @@ from toolaxis.numeric.vectors import perpendicular, unit
 Array = NDArray[np.float64]
 
 
-def _frame(pole: ArrayLike, right: ArrayLike | None) -> tuple[Array, Array, Array]:
-    """Unit vectors along the map's x and y, and out of its centre."""
+class _MapFrame(NamedTuple):
+    """Unit vectors along the map's x and y, and out of its centre, (3,) each."""
+
+    x: Array
+    y: Array
+    z: Array
+
+
+def _frame(pole: ArrayLike, right: ArrayLike | None) -> _MapFrame:
     z = unit(pole)
-    x = perpendicular(z)[0] if right is None else unit(np.asarray(right) - np.dot(right, z) * z)
-    return x, np.cross(z, x), z
+    if right is None:
+        x = perpendicular(z)[0]
+    else:
+        x = unit(np.asarray(right) - np.dot(right, z) * z)
+    return _MapFrame(x, np.cross(z, x), z)
 
 
 def equal_area(axes: ArrayLike, pole: ArrayLike, right: ArrayLike | None = None) -> Array:
@@ -32,13 +44,14 @@ def equal_area(axes: ArrayLike, pole: ArrayLike, right: ArrayLike | None = None)
     (n, 2) array
         Radius sqrt(2) sin(angle / 2): 1 at 90 degrees.
     """
-    x, y, z = _frame(pole, right)
+    frame = _frame(pole, right)
     rows = np.asarray(axes, dtype=float).reshape(-1, 3)
-    height = np.clip(rows @ z, -1.0, 1.0)
-    flat = rows @ np.stack([x, y], axis=1)
+    height = np.clip(rows @ frame.z, -1.0, 1.0)
+    flat = rows @ np.stack([frame.x, frame.y], axis=1)
     size = np.linalg.norm(flat, axis=1)
+    size = np.where(size > 0, size, 1.0)
     radius = np.sqrt(np.maximum(1.0 - height, 0.0))
-    return np.asarray(flat / np.where(size > 0, size, 1.0)[:, None] * radius[:, None])
+    return np.asarray(flat / size[:, None] * radius[:, None])
 
 
 def from_equal_area(places: ArrayLike, pole: ArrayLike, right: ArrayLike | None = None) -> Array:
@@ -56,8 +69,10 @@ def from_equal_area(places: ArrayLike, pole: ArrayLike, right: ArrayLike | None 
     (n, 3) array
         Unit vectors.
     """
-    x, y, z = _frame(pole, right)
+    frame = _frame(pole, right)
     flat = np.asarray(places, dtype=float).reshape(-1, 2)
     square = np.minimum((flat**2).sum(axis=1), 2.0)
     scale = np.sqrt(2.0 - square)
-    return np.asarray((flat[:, :1] * x + flat[:, 1:] * y) * scale[:, None] + (1.0 - square)[:, None] * z)
+    height = 1.0 - square
+    in_plane = flat[:, :1] * frame.x + flat[:, 1:] * frame.y
+    return np.asarray(in_plane * scale[:, None] + height[:, None] * frame.z)

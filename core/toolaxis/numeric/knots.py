@@ -55,16 +55,17 @@ def insert_knot(knots: Array, control: Array, degree: int, t: float) -> tuple[Ar
 
     **Source**: Boehm's algorithm.
     """
-    n = len(control)
-    k = int(np.searchsorted(knots, t, side="right")) - 1
-    k = min(max(k, degree), n - 1)
+    place = int(np.searchsorted(knots, t, side="right"))
+    k = min(max(place - 1, degree), len(control) - 1)  # the span that holds t
     i = np.arange(k - degree + 1, k + 1)
     span = knots[i + degree] - knots[i]
-    share = np.where(span > 0, (t - knots[i]) / np.where(span > 0, span, 1.0), 0.0)
+    is_span = span > 0
+    share = np.where(is_span, (t - knots[i]) / np.where(is_span, span, 1.0), 0.0)
     share = share.reshape(-1, *([1] * (control.ndim - 1)))
     mixed = share * control[i] + (1 - share) * control[i - 1]
-    place = int(np.searchsorted(knots, t, side="right"))
-    return np.insert(knots, place, t), np.concatenate([control[:k - degree + 1], mixed, control[k:]])
+    before = control[:k - degree + 1]
+    after = control[k:]
+    return np.insert(knots, place, t), np.concatenate([before, mixed, after])
 
 
 def restrict_spline(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
@@ -85,9 +86,9 @@ def restrict_spline(knots: Array, control: Array, degree: int, low: float, high:
 
     **Properties**: 1. every point of the piece lies where it lay on the whole spline, at the same parameter.
     """
-    if not knots[degree] <= low < high <= knots[-degree - 1]:
-        raise InvalidInput(f"interval [{low}, {high}] must be a part of the spline's range "
-                           f"[{knots[degree]}, {knots[-degree - 1]}]")
+    begin, end = knots[degree], knots[-degree - 1]
+    if not begin <= low < high <= end:
+        raise InvalidInput(f"interval [{low}, {high}] must be a part of the spline's range [{begin}, {end}]")
     knots = np.array(knots)
     for t in (low, high):
         knots[np.abs(knots - t) <= SAME * (high - low)] = t
@@ -96,7 +97,8 @@ def restrict_spline(knots: Array, control: Array, degree: int, low: float, high:
     first = int(np.searchsorted(knots, low, side="right")) - 1 - degree
     inner = knots[(knots > low) & (knots < high)]
     clamped = np.concatenate([np.full(degree + 1, low), inner, np.full(degree + 1, high)])
-    return clamped, np.ascontiguousarray(control[first:first + len(clamped) - degree - 1])
+    count = len(clamped) - degree - 1
+    return clamped, np.ascontiguousarray(control[first:first + count])
 
 
 def unroll_periodic(knots: Array, control: Array, degree: int, low: float, high: float) -> tuple[Array, Array]:
@@ -113,16 +115,19 @@ def unroll_periodic(knots: Array, control: Array, degree: int, low: float, high:
     low, high : float
         Any interval, also longer than the period or beyond the range.
     """
-    n = len(control)
-    period = float(knots[-degree - 1] - knots[degree])
-    first = int(np.floor((low - knots[degree]) / period)) - 1
-    last = int(np.ceil((high - knots[degree]) / period)) + 1
+    begin = knots[degree]
+    period = float(knots[-degree - 1] - begin)
+    first = int(np.floor((low - begin) / period)) - 1
+    last = int(np.ceil((high - begin) / period)) + 1
     turns = np.arange(first, last + 1)
-    flat = (knots[:n] + period * turns[:, None]).ravel()
-    apart = np.diff(flat, prepend=flat[0] - period) > SAME * period
-    flat = flat[apart][np.cumsum(apart) - 1]
-    net = np.concatenate([control] * len(turns))[:len(flat) - degree - 1]
-    return restrict_spline(flat, net, degree, low, high)
+    of_one_period = knots[:len(control)]
+    repeated = (of_one_period + period * turns[:, None]).ravel()
+    # Knots that are one but for rounding become the first of them.
+    is_new = np.diff(repeated, prepend=repeated[0] - period) > SAME * period
+    which = np.cumsum(is_new) - 1
+    unrolled = repeated[is_new][which]
+    net = np.concatenate([control] * len(turns))
+    return restrict_spline(unrolled, net[:len(unrolled) - degree - 1], degree, low, high)
 
 
 def insert_knots(knots: Array, control: Array, degree: int, target: Array) -> Array:
@@ -170,16 +175,18 @@ def elevate_degree(knots: Array, control: Array, degree: int, target: int) -> tu
         return knots, control
     values, counts = np.unique(knots, return_counts=True)
     more = np.repeat(values, counts + target - degree)
-    places = np.lib.stride_tricks.sliding_window_view(more[1:-1], target).mean(axis=1)
-    there = _collocation(knots, degree, places) @ control.reshape(len(control), -1)
-    found = np.linalg.solve(_collocation(more, target, places), there)
-    found[[0, -1]] = there[[0, -1]]
+    greville = np.lib.stride_tricks.sliding_window_view(more[1:-1], target).mean(axis=1)
+    points = _collocation(knots, degree, greville) @ control.reshape(len(control), -1)
+    found = np.linalg.solve(_collocation(more, target, greville), points)
+    found[[0, -1]] = points[[0, -1]]
     return np.asarray(more), np.asarray(found).reshape(-1, *control.shape[1:])
 
 
 def _collocation(knots: Array, degree: int, places: Array) -> Array:
     """Basis functions (columns) at places (rows)."""
-    rows, first = basis_derivatives_numpy(knots, degree, places)
+    derivatives, first = basis_derivatives_numpy(knots, degree, places)
+    values = derivatives[:, 0]
+    columns = first[:, None] + np.arange(degree + 1)
     table = np.zeros((len(places), len(knots) - degree - 1))
-    np.put_along_axis(table, first[:, None] + np.arange(degree + 1), rows[:, 0], axis=1)
+    np.put_along_axis(table, columns, values, axis=1)
     return table

@@ -1,5 +1,7 @@
 """What layers around a closed face leave at both ends of its span: strips from the outermost layers to the border."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,13 @@ Array = NDArray[np.float64]
 _BEYOND = 0.4
 #: Layers nearer to the border than this share of the step are there.
 _THERE = 0.45
+
+
+class _Layer(NamedTuple):
+    """A layer in the parameters of its face: places around, ascending from end to end, and steps, (n,) each."""
+
+    along: Array
+    step: Array
 
 
 def beyond_layers(face: Face, path: ToolPath, feed: str) -> tuple[Zone, ...]:
@@ -35,31 +44,41 @@ def beyond_layers(face: Face, path: ToolPath, feed: str) -> tuple[Zone, ...]:
     """
     if path.passes < 2:
         return ()
-    lines = [_line(face, path, k, feed) for k in (0, 1, path.passes - 2, path.passes - 1)]
-    u0, u1, v0, v1 = face.bounds
-    (a0, a1), (s0, s1) = ((u0, u1), (v0, v1)) if feed == "u" else ((v0, v1), (u0, u1))
+    first, second, last_but_one, last = (_layer(face, path, number, feed)
+                                         for number in (0, 1, path.passes - 2, path.passes - 1))
     zones = []
-    for (along, outer), inner in ((lines[0], lines[1]), (lines[3], lines[2])):
-        step = outer - np.interp(along, *inner)
-        border = s1 if step.mean() > 0 else s0
-        if abs(border - outer.mean()) <= _THERE * abs(step.mean()):
-            continue
-        edge = np.clip(outer + _BEYOND * step, s0, s1)
-        loop = np.concatenate([np.column_stack([along, edge]), [[a1, border], [a0, border]]])
-        piece = face.trimmed((loop if feed == "u" else loop[:, ::-1],))
-        zones.append(Zone(piece.trims, piece.area))
+    for outer, inner in ((first, second), (last, last_but_one)):
+        loop = _strip_beyond(face, outer, inner, feed)
+        if loop is not None:
+            piece = face.trimmed((loop,))
+            zones.append(Zone(piece.trims, piece.area))
     return tuple(sorted(zones, key=lambda zone: -zone.area))
 
 
-def _line(face: Face, path: ToolPath, number: int, feed: str) -> tuple[Array, Array]:
-    """A layer in the parameters: places around, ascending from end to end, and steps."""
+def _strip_beyond(face: Face, outer: _Layer, inner: _Layer, feed: str) -> Array | None:
+    """The loop around what an outermost layer leaves up to the border, (m, 2); None where it is at the border."""
+    u0, u1, v0, v1 = face.bounds
+    along_ends, step_ends = ((u0, u1), (v0, v1)) if feed == "u" else ((v0, v1), (u0, u1))
+    outwards = outer.step - np.interp(outer.along, inner.along, inner.step)
+    border = step_ends[1] if outwards.mean() > 0 else step_ends[0]
+    if abs(border - outer.step.mean()) <= _THERE * abs(outwards.mean()):
+        return None
+    edge = np.clip(outer.step + _BEYOND * outwards, *step_ends)
+    at_layer = np.column_stack([outer.along, edge])
+    at_border = [[along_ends[1], border], [along_ends[0], border]]
+    loop = np.concatenate([at_layer, at_border])
+    return loop if feed == "u" else loop[:, ::-1]
+
+
+def _layer(face: Face, path: ToolPath, number: int, feed: str) -> _Layer:
     rows = np.arange(path.breaks[number], path.breaks[number + 1])
-    rows = rows[path.kind[rows] == Motion.CUT]
-    uv = nearest(face, path.cc[rows]).uv
-    along, step = uv[:, int(feed == "v")], uv[:, int(feed == "u")]
+    cuts = rows[path.kind[rows] == Motion.CUT]
+    u, v = nearest(face, path.cc[cuts]).uv.T
+    along, step = (u, v) if feed == "u" else (v, u)
     order = np.argsort(along, kind="stable")
     along, step = along[order], step[order]
-    low, high = (face.bounds[:2] if feed == "u" else face.bounds[2:])
-    kept = (along > low) & (along < high) & np.concatenate([[True], np.diff(along) > 1e-9 * (high - low)])
-    along, step = along[kept], step[kept]
-    return np.concatenate([[low], along, [high]]), np.concatenate([step[:1], step, step[-1:]])
+    low, high = face.bounds[:2] if feed == "u" else face.bounds[2:]
+    is_apart = np.concatenate([[True], np.diff(along) > 1e-9 * (high - low)])
+    is_kept = (along > low) & (along < high) & is_apart
+    along, step = along[is_kept], step[is_kept]
+    return _Layer(np.concatenate([[low], along, [high]]), np.concatenate([step[:1], step, step[-1:]]))

@@ -19,14 +19,36 @@ def blades_document(blades: Blades | None) -> Document | None:
     """
     if blades is None:
         return None
-    return {"point": blades.point.tolist(), "axis": blades.axis.tolist(), "hub": list(blades.hub),
-            "blades": [{"faces": {name: list(faces) for name, faces in one.faces.items()}, "area": one.area,
-                        "left": one.left} for one in blades.blades],
-            "gap": {"distance": blades.gap.distance, "places": np.asarray(blades.gap.places, dtype=float).tolist()},
-            "copies": [{"operation": copy, "of": source} for copy, source in sorted(blades.copies.items())],
-            "searched": list(blades.searched),
-            "clearances": [{"to": room.to, "component": room.component, "distance": float(room.distance),
-                            "operation": room.operation, "face": room.face} for room in blades.room]}
+    return {
+        "point": blades.point.tolist(),
+        "axis": blades.axis.tolist(),
+        "hub": list(blades.hub),
+        "blades": [_blade_document(blade) for blade in blades.blades],
+        "gap": _gap_document(blades.gap),
+        "copies": [{"operation": copy, "of": source} for copy, source in sorted(blades.copies.items())],
+        "searched": list(blades.searched),
+        "clearances": [_clearance_document(clearance) for clearance in blades.room],
+    }
+
+
+def _blade_document(blade: PlannedBlade) -> Document:
+    faces = {name: list(numbers) for name, numbers in blade.faces.items()}
+    return {"faces": faces, "area": blade.area, "left": blade.left}
+
+
+def _gap_document(gap: Gap) -> Document:
+    places = np.asarray(gap.places, dtype=float)
+    return {"distance": gap.distance, "places": places.tolist()}
+
+
+def _clearance_document(clearance: BladeClearance) -> Document:
+    return {
+        "to": clearance.to,
+        "component": clearance.component,
+        "distance": float(clearance.distance),
+        "operation": clearance.operation,
+        "face": clearance.face,
+    }
 
 
 def blades_from(document: Mapping[str, Any] | None, operations: int) -> Blades | None:
@@ -45,10 +67,18 @@ def blades_from(document: Mapping[str, Any] | None, operations: int) -> Blades |
     """
     if document is None:
         return None
-    blades = tuple(PlannedBlade({name: tuple(faces) for name, faces in one["faces"].items()}, one["area"], one["left"])
-                   for one in document["blades"])
+    point = np.array(document["point"], dtype=float)
+    axis = np.array(document["axis"], dtype=float)
+    hub = tuple(document["hub"])
+    planned = tuple(_blade_from(one) for one in document["blades"])
     gap = Gap(document["gap"]["distance"], np.array(document["gap"]["places"], dtype=float))
-    return Blades(np.array(document["point"], dtype=float), np.array(document["axis"], dtype=float),
-                  tuple(document["hub"]), blades, gap,
-                  {pair["operation"]: pair["of"] for pair in document["copies"]}, tuple(document["searched"]),
-                  tuple(BladeClearance(**room) for room in document["clearances"])).checked(operations)
+    copies = {pair["operation"]: pair["of"] for pair in document["copies"]}
+    searched = tuple(document["searched"])
+    clearances = tuple(BladeClearance(**one) for one in document["clearances"])
+    blades = Blades(point, axis, hub, planned, gap, copies, searched, clearances)
+    return blades.checked(operations)
+
+
+def _blade_from(document: Mapping[str, Any]) -> PlannedBlade:
+    faces = {name: tuple(numbers) for name, numbers in document["faces"].items()}
+    return PlannedBlade(faces, document["area"], document["left"])

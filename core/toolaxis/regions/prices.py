@@ -4,6 +4,7 @@ The time that a cell takes is its area over the width and the feed rate.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -58,8 +59,8 @@ def widths(cells: FaceCells, tools: Sequence[Tool], axes: ArrayLike, scallop: fl
     found = np.empty((len(tools), len(rows), len(cells)))
     for number, tool in enumerate(tools):
         for first in range(0, len(rows), _TOGETHER):
-            some = slice(first, first + _TOGETHER)
-            found[number, some] = _widest(forms, tool, rows[some], (scallop, allowance))
+            block = slice(first, first + _TOGETHER)
+            found[number, block] = _widest(forms, tool, rows[block], scallop, allowance)
     return np.minimum(found, greatest_step_over)
 
 
@@ -75,8 +76,11 @@ def fits_hollows(cells: FaceCells, tool: Tool, axes: ArrayLike, scallop: float, 
     scallop, allowance : float
         mm
     """
-    return np.asarray(_least_bend(_forms_of(cells), unit(as_rows(axes, 3, "axes")),
-                                  screening_cutter(tool, scallop, allowance))[0] > 0)
+    rows = unit(as_rows(axes, 3, "axes"))
+    cutter = screening_cutter(tool, scallop, allowance)
+    forms = _forms_of(cells)
+    difference = _second_forms(forms, _in_frames(forms, rows), cutter)
+    return np.asarray(difference.least > 0)
 
 
 def _forms_of(cells: FaceCells) -> Array:
@@ -84,22 +88,51 @@ def _forms_of(cells: FaceCells) -> Array:
     return np.column_stack([cells.tangent, np.cross(cells.normal, cells.tangent), cells.normal, cells.form])
 
 
-def _least_bend(forms: Array, axes: Array, cutter: CutterParameters) -> tuple[Array, Array, Array, Array]:
-    """Smaller eigenvalue of the difference of the second forms of cutter and face, (k, n), and its three entries."""
-    along, across = (axes @ forms[:, first:first + 3].T for first in (0, 3))
-    ff, fk, kk = relative_forms(forms, (along, across), cutter)
-    return (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk), ff, fk, kk
+class _AxesInFrames(NamedTuple):
+    """Components of axes along the tangent, across it and along the normal of each cell, (k, n) each."""
+
+    along: Array
+    across: Array
+    up: Array
 
 
-def _widest(forms: Array, tool: Tool, axes: Array, heights: tuple[float, float]) -> Array:
+def _in_frames(forms: Array, axes: Array) -> _AxesInFrames:
+    along = axes @ forms[:, 0:3].T
+    across = axes @ forms[:, 3:6].T
+    up = axes @ forms[:, 6:9].T
+    return _AxesInFrames(along, across, up)
+
+
+class _FormDifference(NamedTuple):
+    """The second form of a cutter less that of the face, by axes and cells, (k, n) each, 1/mm.
+
+    Its entries along the tangent, mixed and across, and its smaller eigenvalue.
+    """
+
+    ff: Array
+    fk: Array
+    kk: Array
+    least: Array
+
+
+def _second_forms(forms: Array, axis: _AxesInFrames, cutter: CutterParameters) -> _FormDifference:
+    ff, fk, kk = relative_forms(forms, (axis.along, axis.across), cutter)
+    least = (ff + kk) / 2 - np.hypot((ff - kk) / 2, fk)
+    return _FormDifference(ff, fk, kk, least)
+
+
+def _widest(forms: Array, tool: Tool, axes: Array, scallop: float, allowance: float) -> Array:
     """Widths for one tool, (k, n)."""
-    scallop, allowance = heights
-    cutter, table = screening_cutter(tool, scallop, allowance), lean_table(tool, scallop)
-    along, across, up = (axes @ forms[:, first:first + 3].T for first in (0, 3, 6))
-    least, ff, fk, kk = _least_bend(forms, axes, cutter)
-    turn = np.arctan2(2 * fk, ff - kk) / 2  # of the eigenvector of the larger eigenvalue: the feed
+    cutter = screening_cutter(tool, scallop, allowance)
+    axis = _in_frames(forms, axes)
+    difference = _second_forms(forms, axis, cutter)
+    leaves_strip = (difference.least > 0) & (axis.up >= cutter.sin - 1e-9)
+    least = np.where(leaves_strip, difference.least, 1.0)
+    half = np.minimum(np.sqrt(2 * scallop / least), CAP * tool.radius)
+    # The feed is the eigenvector of the larger eigenvalue.
+    turn = np.arctan2(2 * difference.fk, difference.ff - difference.kk) / 2
     cosine, sine = np.cos(turn), np.sin(turn)
-    free = (least > 0) & (up >= cutter.sin - 1e-9)
-    half = np.minimum(np.sqrt(2 * scallop / np.where(free, least, 1.0)), CAP * tool.radius)
-    half *= lean_ratios(table, cosine * along + sine * across, cosine * across - sine * along)
-    return np.asarray(np.where(free, 2 * half, 0.0))
+    along_feed = cosine * axis.along + sine * axis.across
+    across_feed = cosine * axis.across - sine * axis.along
+    half *= lean_ratios(lean_table(tool, scallop), along_feed, across_feed)
+    return np.asarray(np.where(leaves_strip, 2 * half, 0.0))

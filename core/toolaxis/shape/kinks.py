@@ -1,6 +1,7 @@
 """Kinks: knot lines along which a surface is only C0, and the pieces between them."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,14 +30,18 @@ def kinks_of(face: Face, jump: float = JUMP) -> tuple[tuple[float, ...], tuple[f
     jump : float
         Least angle between the normals on both sides, rad.
     """
-    found = []
+    return _kinks_along(face, 0, jump), _kinks_along(face, 1, jump)
+
+
+def _kinks_along(face: Face, axis: int, jump: float) -> tuple[float, ...]:
+    """Parameters of one axis, 0 for u and 1 for v, at which the normal jumps."""
     surface = face.surface
-    for axis, knots in enumerate((surface.knots_u, surface.knots_v)):
-        values, counts = distinct_inner(knots, surface.degree[axis])
-        low, high = face.bounds[2 * axis:2 * axis + 2]
-        found.append(tuple(float(t) for t in values[counts >= surface.degree[axis]]
-                           if low < t < high and turn_at(face, axis, float(t)) > jump))
-    return found[0], found[1]
+    knots = (surface.knots_u, surface.knots_v)[axis]
+    degree = surface.degree[axis]
+    values, counts = distinct_inner(knots, degree)
+    low, high = face.bounds[2 * axis:2 * axis + 2]
+    inside = [float(t) for t in values[counts >= degree] if low < t < high]
+    return tuple(t for t in inside if turn_at(face, axis, t) > jump)
 
 
 def turn_at(face: Face, axis: int, t: float) -> float:
@@ -50,9 +55,11 @@ def turn_at(face: Face, axis: int, t: float) -> float:
     t : float
         The knot.
     """
-    sides = [face.normal(uv) for uv in beside(face, axis, t)]
-    sound = (np.linalg.norm(sides[0], axis=1) > 0.5) & (np.linalg.norm(sides[1], axis=1) > 0.5)
-    return float(angle_between(sides[0], sides[1])[sound].max(initial=0.0))
+    before, on = (face.normal(uv) for uv in beside(face, axis, t))
+    # Where a surface is degenerate its normal is zero.
+    has_normals = (np.linalg.norm(before, axis=1) > 0.5) & (np.linalg.norm(on, axis=1) > 0.5)
+    turns = angle_between(before, on)
+    return float(turns[has_normals].max(initial=0.0))
 
 
 def beside(face: Face, axis: int, t: float) -> tuple[Array, Array]:
@@ -66,11 +73,18 @@ def beside(face: Face, axis: int, t: float) -> tuple[Array, Array]:
     t : float
         The knot.
     """
-    low, high = face.bounds[2 - 2 * axis:4 - 2 * axis]
+    u0, u1, v0, v1 = face.bounds
+    low, high = (v0, v1) if axis == 0 else (u0, u1)
     along = low + (high - low) * (np.arange(SAMPLES) + 0.5) / SAMPLES
-    before, on = (np.stack([np.full(SAMPLES, value), along][::1 - 2 * axis], axis=1)
-                  for value in (np.nextafter(t, -np.inf), t))
-    return before, on
+    just_before = float(np.nextafter(t, -np.inf))
+    return _knot_line(axis, just_before, along), _knot_line(axis, t, along)
+
+
+def _knot_line(axis: int, value: float, along: Array) -> Array:
+    """Parameters of places on a line where one parameter has a value, (n, 2)."""
+    constant = np.full(len(along), value)
+    u, v = (constant, along) if axis == 0 else (along, constant)
+    return np.stack([u, v], axis=1)
 
 
 def with_kinks(face: Face) -> Face:
@@ -101,17 +115,21 @@ def split_at_kinks(face: Face) -> tuple[Face, ...]:
     if face.kinks == ((), ()):
         return (face,)
     (u0, u1), (v0, v1) = face.surface.domain
+    kinks_u, kinks_v = face.kinks
     pieces: list[Face] = []
-    for strip_u in zip((u0, *face.kinks[0]), (*face.kinks[0], u1), strict=True):
+    for strip_u in pairwise((u0, *kinks_u, u1)):
         column = _within(face.outline, 0, strip_u)
-        for strip_v in zip((v0, *face.kinks[1]), (*face.kinks[1], v1), strict=True):
+        for strip_v in pairwise((v0, *kinks_v, v1)):
             loops = _within(column, 1, strip_v)
             pieces += [_piece(face, strip_u, strip_v, own) for own in outer_with_holes(loops)]
     return tuple(replace(piece, label=face.label + letters(k)) for k, piece in enumerate(pieces))
 
 
 def _within(loops: tuple[Array, ...], axis: int, strip: tuple[float, float]) -> tuple[Array, ...]:
-    return clip_half_plane(clip_half_plane(loops, axis, strip[0], True), axis, strip[1], False)
+    """Loops clipped to a strip of one parameter."""
+    low, high = strip
+    above = clip_half_plane(loops, axis, low, True)
+    return clip_half_plane(above, axis, high, False)
 
 
 def _piece(face: Face, strip_u: tuple[float, float], strip_v: tuple[float, float], loops: tuple[Array, ...]) -> Face:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,13 @@ Index = NDArray[np.int64]
 #: Steps at most, the least share of Newton's step that is tried, and the share of a parameter's range below which
 #: a step is nothing.
 STEPS, LEAST_SHARE, NOTHING = 30, 0.005, 1e-13
+
+
+class _FacePoints(NamedTuple):
+    """Points of a face by their parameters, (n, 2), and their distances from the targets, (n,) mm."""
+
+    uv: Array
+    distance: Array
 
 
 def nearest_inside_numpy(face: Face, targets: Array, grid: Array, starts: Index) -> tuple[Array, Array]:
@@ -49,15 +57,17 @@ def nearest_along_numpy(face: Face, targets: Array, loop: tuple[Array, Array], s
         On both sides of which of them it is looked for the nearest point.
     """
     corners, position = loop
+    whole = len(corners)
     found = []
     gap = partial(_gap, face, targets, corners)
     for column in starts.T:
-        before = np.where(column > 0, position[column - 1], position[-1] - len(corners))
-        after = np.append(position, len(corners))[column + 1]
-        for low, high in ((before, position[column]), (position[column], after)):
-            at, _ = least_between(gap, low, high)
-            uv = walk(corners, at)
-            found.append((uv, _distances(face, targets, uv)))
+        here = position[column]
+        before = np.where(column > 0, position[column - 1], position[-1] - whole)
+        after = np.append(position, whole)[column + 1]
+        for low, high in ((before, here), (here, after)):
+            nearest, _ = least_between(gap, low, high)
+            uv = walk(corners, nearest)
+            found.append(_FacePoints(uv, _distances(face, targets, uv)))
     return _pick(found)
 
 
@@ -69,40 +79,61 @@ def _distances(face: Face, targets: Array, uv: Array) -> Array:
     return lengths(face.evaluate(uv).point - targets)
 
 
-def _pick(found: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
-    row, choice = np.arange(len(found[0][1])), np.argmin([distance for _, distance in found], axis=0)
-    return np.stack([uv for uv, _ in found])[choice, row], np.stack([distance for _, distance in found])[choice, row]
+def _pick(found: Sequence[_FacePoints]) -> _FacePoints:
+    """The nearest of several points for each target."""
+    distances = np.stack([points.distance for points in found])
+    parameters = np.stack([points.uv for points in found])
+    choice = np.argmin(distances, axis=0)
+    row = np.arange(len(choice))
+    return _FacePoints(parameters[choice, row], distances[choice, row])
 
 
-def _descend(face: Face, targets: Array, uv: Array) -> tuple[Array, Array]:
+def _descend(face: Face, targets: Array, uv: Array) -> _FacePoints:
     """Newton steps down the squared distance, halved until they descend, as long as they stay on the face."""
     u0, u1, v0, v1 = face.bounds
-    low, high = np.array([u0, v0]), np.array([u1, v1])
-    best, distance = uv.copy(), _distances(face, targets, uv)
-    share, rows = np.ones(len(uv)), np.arange(len(uv))
+    low = np.array([u0, v0])
+    high = np.array([u1, v1])
+    least_move = NOTHING * (high - low)
+    best = uv.copy()
+    distance = _distances(face, targets, uv)
+    share = np.ones(len(uv))
+    rows = np.arange(len(uv))  # of the searches that still move
     for _ in range(STEPS):
         start = best[rows]
-        trial = np.clip(start + share[rows, None] * _newton(face, targets[rows], start), low, high)
+        step = share[rows, None] * _newton_step(face, targets[rows], start)
+        trial = np.clip(start + step, low, high)
         found = _distances(face, targets[rows], trial)
-        better = (found < distance[rows]) & face.contains(trial)
-        best[rows[better]], distance[rows[better]] = trial[better], found[better]
-        share[rows] = np.where(better, 1.0, 0.5 * share[rows])
-        moved = (np.abs(trial - start) > NOTHING * (high - low)).any(axis=1)
-        rows = rows[moved & (share[rows] >= LEAST_SHARE)]
+        is_better = (found < distance[rows]) & face.contains(trial)
+        improved = rows[is_better]
+        best[improved] = trial[is_better]
+        distance[improved] = found[is_better]
+        share[rows] = np.where(is_better, 1.0, 0.5 * share[rows])
+        has_moved = (np.abs(trial - start) > least_move).any(axis=1)
+        rows = rows[has_moved & (share[rows] >= LEAST_SHARE)]
         if not len(rows):
             break
-    return best, distance
+    return _FacePoints(best, distance)
 
 
-def _newton(face: Face, targets: Array, uv: Array) -> Array:
-    """Steps of Newton's method, of Gauss and Newton's where the former would climb."""
+def _newton_step(face: Face, targets: Array, uv: Array) -> Array:
+    """Steps of Newton's method, of Gauss and Newton's where the former would climb, (n, 2)."""
     d = face.evaluate(uv)
     gap = d.point - targets
-    fu, fv = dot(gap, d.su), dot(gap, d.sv)
-    e, f, g = dot(d.su, d.su), dot(d.su, d.sv), dot(d.sv, d.sv)
-    a, b, c = e + dot(gap, d.suu), f + dot(gap, d.suv), g + dot(gap, d.svv)
-    full = (a > 0) & (a * c - b * b > 1e-12 * e * g)
-    a, b, c = np.where(full, a, e * (1 + 1e-9)), np.where(full, b, f), np.where(full, c, g * (1 + 1e-9))
-    determinant = a * c - b * b
-    step = np.stack([b * fv - c * fu, b * fu - a * fv], axis=1)
-    return np.asarray(step / np.where(determinant > 0, determinant, np.inf)[:, None])
+    # Half the gradient of the squared distance.
+    slope_u = dot(gap, d.su)
+    slope_v = dot(gap, d.sv)
+    # The first fundamental form is Gauss and Newton's matrix; with the bend of the face it is Newton's.
+    e = dot(d.su, d.su)
+    f = dot(d.su, d.sv)
+    g = dot(d.sv, d.sv)
+    h_uu = e + dot(gap, d.suu)
+    h_uv = f + dot(gap, d.suv)
+    h_vv = g + dot(gap, d.svv)
+    descends = (h_uu > 0) & (h_uu * h_vv - h_uv * h_uv > 1e-12 * e * g)
+    h_uu = np.where(descends, h_uu, e * (1 + 1e-9))
+    h_uv = np.where(descends, h_uv, f)
+    h_vv = np.where(descends, h_vv, g * (1 + 1e-9))
+    determinant = h_uu * h_vv - h_uv * h_uv
+    step = np.stack([h_uv * slope_v - h_vv * slope_u, h_uv * slope_u - h_uu * slope_v], axis=1)
+    divisor = np.where(determinant > 0, determinant, np.inf)
+    return np.asarray(step / divisor[:, None])

@@ -29,25 +29,40 @@ def hatch_lines(face: Face, pitch: float, lift: float = 0.0) -> list[Array]:
     list of (k, 3) arrays
         The closed outlines first, each with its first point again at its end; then the lines.
     """
-    u0, u1, v0, v1 = face.bounds
-    inner = face.grid(6, 6)
-    d = face.evaluate(inner if len(inner) else np.array([[(u0 + u1) / 2, (v0 + v1) / 2]]))
-    scale = np.array([np.linalg.norm(rate, axis=1).mean() for rate in (d.su, d.sv)])
-    scale = np.where(scale > 0, scale, 1.0)
-    turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2.0)
-    loops = [loop for loop in outline_loops(face, lift / 2 if lift > 0 else 1e-3 * face.diagonal) if len(loop) > 2]
-    turned = tuple((loop * scale) @ turn.T for loop in loops)
-    made = [_lift_points(face, np.concatenate([loop, loop[:1]]), lift) for loop in loops]
-    if not made:
+    bound = lift / 2 if lift > 0 else 1e-3 * face.diagonal
+    loops = [loop for loop in outline_loops(face, bound) if len(loop) > 2]
+    if not loops:
         return []
-    low, high = (f(np.concatenate(turned)[:, 1]) for f in (np.min, np.max))
+    outlines = [_lift_points(face, np.concatenate([loop, loop[:1]]), lift) for loop in loops]
+    # In a plane that is turned by 45 degrees, and has parameters in mm, the lines lie level and at the pitch.
+    scale = _parameter_scale(face)
+    turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2.0)
+    level_loops = tuple((loop * scale) @ turn.T for loop in loops)
+    heights = np.concatenate(level_loops)[:, 1]
+    low, high = np.min(heights), np.max(heights)
     step = max(pitch, (high - low) / _MOST)
     share = np.linspace(0.0, 1.0, _POINTS)
+    lines = []
     for y in np.arange(low + step / 2, high, step):
-        for x0, x1 in chords(turned, float(y)):
-            row = np.stack([x0 + share * (x1 - x0), np.full(_POINTS, y)], axis=1)
-            made.append(_lift_points(face, (row @ turn) / scale, lift))
-    return made
+        for x0, x1 in chords(level_loops, float(y)):
+            x = x0 + share * (x1 - x0)
+            level_line = np.stack([x, np.full(_POINTS, y)], axis=1)
+            uv = (level_line @ turn) / scale
+            lines.append(_lift_points(face, uv, lift))
+    return [*outlines, *lines]
+
+
+def _parameter_scale(face: Face) -> Array:
+    """Mean lengths of the units of u and of v on a face, mm; 1 where such a length is zero."""
+    u0, u1, v0, v1 = face.bounds
+    inside = face.grid(6, 6)
+    if not len(inside):
+        inside = np.array([[(u0 + u1) / 2, (v0 + v1) / 2]])
+    d = face.evaluate(inside)
+    mean_u = np.linalg.norm(d.su, axis=1).mean()
+    mean_v = np.linalg.norm(d.sv, axis=1).mean()
+    scale = np.array([mean_u, mean_v])
+    return np.where(scale > 0, scale, 1.0)
 
 
 def _lift_points(face: Face, uv: Array, lift: float) -> Array:

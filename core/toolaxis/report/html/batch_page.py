@@ -55,49 +55,105 @@ def batch_page(name: str, records: Sequence[Mapping[str, Any]], leaves: Mapping[
         HTML that fetches nothing; the same for the same batch.
     """
     jobs = [_job(record, leaves.get(record["job"], JobPage())) for record in records]
-    outcomes = [record["outcome"] for record in records]
-    counts = [(outcome, outcomes.count(outcome)) for outcome in ("complete", "incomplete", "failed", "not done")
-              if outcome in outcomes]
-    troubles: dict[str, list[Any]] = {}
+    jobs_by_trouble: dict[str, list[Any]] = {}
     for job in jobs:
         for text in job["troubles"]:
-            troubles.setdefault(text, []).append(job)
-    context = {"name": name, "version": __version__, "style": page_text("page.css"), "jobs": jobs, "counts": counts,
-               "complete": not troubles, "troubles": list(troubles.items()), "headings": _HEADINGS,
-               "figures": _figures(records)}
+            jobs_by_trouble.setdefault(text, []).append(job)
+    context = {
+        "name": name,
+        "version": __version__,
+        "style": page_text("page.css"),
+        "jobs": jobs,
+        "counts": _count_outcomes(records),
+        "complete": not jobs_by_trouble,
+        "troubles": list(jobs_by_trouble.items()),
+        "headings": _HEADINGS,
+        "figures": _figures(records),
+    }
     return template("batch.html.j2").render(context)
 
 
+def _count_outcomes(records: Sequence[Mapping[str, Any]]) -> list[tuple[str, int]]:
+    """The outcomes that there are, and how many jobs ended so."""
+    outcomes = [record["outcome"] for record in records]
+    known = ("complete", "incomplete", "failed", "not done")
+    return [(outcome, outcomes.count(outcome)) for outcome in known if outcome in outcomes]
+
+
 def _figures(records: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
+    """Sums over all jobs that have a plan, by name."""
     planned = [record for record in records if record["operations"] is not None]
-    found = [("operations", str(sum(record["operations"] for record in planned))),
-             ("passes", str(sum(record["passes"] for record in planned))),
-             ("cutting length", f"{number(sum(record['length'] for record in planned) / 1000, 1)} m"),
-             ("time", clock(sum(record["seconds"] for record in planned)))]
-    judged = [record["verdict"] for record in planned if record["verdict"]]
-    return [*found, ("verified", f"{len(judged)} of {len(records)} jobs")]
+    operations = sum(record["operations"] for record in planned)
+    passes = sum(record["passes"] for record in planned)
+    metres = sum(record["length"] for record in planned) / 1000
+    seconds = sum(record["seconds"] for record in planned)
+    judged = sum(bool(record["verdict"]) for record in planned)
+    return [
+        ("operations", str(operations)),
+        ("passes", str(passes)),
+        ("cutting length", f"{number(metres, 1)} m"),
+        ("time", clock(seconds)),
+        ("verified", f"{judged} of {len(records)} jobs"),
+    ]
+
+
+def _join(separator: str, *texts: str | None) -> str:
+    """Those of some texts that say something."""
+    return separator.join(filter(None, texts))
 
 
 def _job(record: Mapping[str, Any], leaf: JobPage) -> dict[str, Any]:
     """What the template needs of a job."""
-    ended = ", ".join(filter(None, (record["outcome"], record["cause"])))
-    troubles = [] if record["outcome"] == "complete" else [": ".join(filter(None, (ended, record["reason"])))]
-    troubles = troubles or [text for level, text in leaf.warnings if level == "stop"]
-    counted = [f"{count} {level}" for level in _LEVELS
-               if (count := sum(one == level for one, _ in leaf.warnings))]
+    troubles = _troubles(record, leaf)
+    if troubles:
+        level = "stop"
+    else:
+        level = "mind" if any(one == "mind" for one, _ in leaf.warnings) else "good"
+    to_the_right = [right for _, right in _HEADINGS[1:-1]]
+    return {
+        "name": record["job"],
+        "page": quote(leaf.address),
+        "level": level,
+        "troubles": troubles,
+        "said": _remark(record, leaf),
+        "cells": list(zip(_cells(record), to_the_right, strict=True)),
+    }
+
+
+def _troubles(record: Mapping[str, Any], leaf: JobPage) -> list[str]:
+    """Why a job needs a look: how it ended where it did not get through, else its gravest warnings."""
+    if record["outcome"] != "complete":
+        ended = _join(", ", record["outcome"], record["cause"])
+        return [_join(": ", ended, record["reason"])]
+    return [text for level, text in leaf.warnings if level == "stop"]
+
+
+def _remark(record: Mapping[str, Any], leaf: JobPage) -> str:
+    """The last column: why a job failed, or how many warnings it has and the first one that is not grave."""
+    if record["reason"]:
+        return _join("; ", str(record["reason"]), leaf.missing)
+    levels = [level for level, _ in leaf.warnings]
+    counts = [f"{levels.count(level)} {level}" for level in _LEVELS if level in levels]
     first = next((text for level, text in leaf.warnings if level != "stop"), "")
-    told = [str(record["reason"])] if record["reason"] else [", ".join(counted), first]
-    said = "; ".join(filter(None, (*told, leaf.missing)))
-    level = "stop" if troubles else "mind" if any(one == "mind" for one, _ in leaf.warnings) else "good"
-    return {"name": record["job"], "page": quote(leaf.address), "level": level, "troubles": troubles, "said": said,
-            "cells": list(zip(_cells(record), (right for _, right in _HEADINGS[1:-1]), strict=True))}
+    return _join("; ", ", ".join(counts), first, leaf.missing)
 
 
 def _cells(record: Mapping[str, Any]) -> list[str]:
-    status = ", ".join(filter(None, (record["outcome"], record["cause"],
-                                    record["verdict"] and f"verdict {record['verdict']}")))
-    figures = ["-"] * 7 if record["operations"] is None else [
-        str(record["operations"]), str(record["orientations"]), str(record["passes"]), number(record["length"], 1),
-        number(record["travel"], 1), clock(record["seconds"]),
-        "-" if record["gouge"] is None else number(1000 * record["gouge"], 2)]
+    """The other columns, but for the name."""
+    verdict = f"verdict {record['verdict']}" if record["verdict"] else ""
+    status = _join(", ", record["outcome"], record["cause"], verdict)
+    figures = ["-"] * 7 if record["operations"] is None else _plan_figures(record)
     return [status, record["tool"], record["machine"] or "-", *figures, f"{record['spent']:.1f} s"]
+
+
+def _plan_figures(record: Mapping[str, Any]) -> list[str]:
+    gouge = record["gouge"]
+    return [
+        str(record["operations"]),
+        str(record["orientations"]),
+        str(record["passes"]),
+        number(record["length"], 1),
+        number(record["travel"], 1),
+        clock(record["seconds"]),
+        "-" if gouge is None else number(1000 * gouge, 2),
+    ]
