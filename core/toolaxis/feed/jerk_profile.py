@@ -60,9 +60,12 @@ class JerkProfile:
 
 
 def _after(state: Array, jerk: Array, time: Array) -> Array:
-    s, v, a = state[..., 0], state[..., 1], state[..., 2]
-    return np.stack([s + time * (v + time * (a / 2 + time * jerk / 6)), v + time * (a + time * jerk / 2),
-                     a + time * jerk], axis=-1)
+    """Position, velocity and acceleration after a time of constant jerk, (..., 3)."""
+    position, velocity, acceleration = state[..., 0], state[..., 1], state[..., 2]
+    position = position + time * (velocity + time * (acceleration / 2 + time * jerk / 6))
+    velocity = velocity + time * (acceleration + time * jerk / 2)
+    acceleration = acceleration + time * jerk
+    return np.stack([position, velocity, acceleration], axis=-1)
 
 
 def check_limits(velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> None:
@@ -93,11 +96,13 @@ def ramp_time(change: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> tu
         Change of velocity, of either sign.
     acceleration, jerk : array_like
     """
-    size, a, j = (np.asarray(value, dtype=float) for value in (change, acceleration, jerk))
-    size = np.abs(size)
-    short = size <= a * a / j
-    rise = np.where(short, np.sqrt(size / j), a / j)
-    return rise, np.where(short, 0.0, np.maximum(size / a - a / j, 0.0))
+    size = np.abs(np.asarray(change, dtype=float))
+    a = np.asarray(acceleration, dtype=float)
+    j = np.asarray(jerk, dtype=float)
+    is_short = size <= a * a / j  # the acceleration does not come to its limit
+    rise = np.where(is_short, np.sqrt(size / j), a / j)
+    hold = np.where(is_short, 0.0, np.maximum(size / a - a / j, 0.0))
+    return rise, hold
 
 
 def ramp_length(start: ArrayLike, end: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> Array:
@@ -107,9 +112,11 @@ def ramp_length(start: ArrayLike, end: ArrayLike, acceleration: ArrayLike, jerk:
     ----------
     start, end, acceleration, jerk : array_like
     """
-    v0, v1 = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    v0 = np.asarray(start, dtype=float)
+    v1 = np.asarray(end, dtype=float)
     rise, hold = ramp_time(v1 - v0, acceleration, jerk)
-    return np.asarray((v0 + v1) / 2 * (2 * rise + hold))
+    mean = (v0 + v1) / 2
+    return np.asarray(mean * (2 * rise + hold))
 
 
 def reachable(start: ArrayLike, length: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> Array:
@@ -127,22 +134,29 @@ def reachable(start: ArrayLike, length: ArrayLike, acceleration: ArrayLike, jerk
     """
     v0, way, a, j = (np.asarray(value, dtype=float) for value in (start, length, acceleration, jerk))
     rise = _cubic_root(2 * v0 / j, way / j)
-    short = v0 + j * rise * rise
+    without_hold = v0 + j * rise * rise
+    # Beyond this change of velocity the acceleration is held at its limit.
     shift = a * a / j
-    held = -shift / 2 + np.sqrt(np.maximum((v0 - shift / 2) ** 2 + 2 * a * way, 0.0))
-    return np.asarray(np.where(short - v0 <= shift, short, held))
+    square = (v0 - shift / 2) ** 2 + 2 * a * way
+    with_hold = -shift / 2 + np.sqrt(np.maximum(square, 0.0))
+    return np.asarray(np.where(without_hold - v0 <= shift, without_hold, with_hold))
 
 
 def _cubic_root(p: Array, q: Array) -> Array:
     """The root x >= 0 of x^3 + p x = q with p, q >= 0, without cancellation."""
+    # Cardano's formula, of whose two cube roots the smaller one follows from the larger.
     half, third = q / 2, p / 3
     big = np.cbrt(half + np.sqrt(half * half + third**3))
-    root = big - np.where(big > 0, third / np.where(big > 0, big, 1.0), 0.0)
+    small = np.where(big > 0, third / np.where(big > 0, big, 1.0), 0.0)
+    root = big - small
     linear = q / np.where(p > 0, p, 1.0)
-    root = np.where((p > 0) & (linear**2 < 1e-6 * p), linear, root)
+    is_linear = (p > 0) & (linear**2 < 1e-6 * p)
+    root = np.where(is_linear, linear, root)
+    # Newton's method takes away what is left of cancellation.
     for _ in range(3):
         slope = 3 * root * root + p
-        root = np.where(slope > 0, root - (root**3 + p * root - q) / np.where(slope > 0, slope, 1.0), root)
+        step = (root**3 + p * root - q) / np.where(slope > 0, slope, 1.0)
+        root = np.where(slope > 0, root - step, root)
     return np.asarray(np.maximum(root, 0.0))
 
 
@@ -160,14 +174,15 @@ def peak_velocity(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLik
     way, top, a, j = (np.asarray(value, dtype=float) for value in (length, velocity, acceleration, jerk))
     v0, v1 = (np.asarray(value, dtype=float) for value in ends)
     low = np.maximum(v0, v1)
-    most = np.minimum(top, np.minimum(reachable(v0, way, a, j), reachable(v1, way, a, j)))
-    high = np.maximum(most, low)
-    same = np.asarray(v0 == v1)
-    peak = np.array(np.where(same, np.minimum(top, reachable(v0, way / 2, a, j)), high))
-    beyond = ~same & (_needed(v0, v1, high, a, j) > way)
-    if beyond.any():
-        peak[beyond] = _bisect_velocity(*(np.broadcast_to(x, peak.shape)[beyond]
-                                          for x in (low, high, v0, v1, way, a, j)))
+    reachable_from_both = np.minimum(reachable(v0, way, a, j), reachable(v1, way, a, j))
+    high = np.maximum(np.minimum(top, reachable_from_both), low)
+    is_symmetric = np.asarray(v0 == v1)
+    symmetric_peak = np.minimum(top, reachable(v0, way / 2, a, j))
+    peak = np.array(np.where(is_symmetric, symmetric_peak, high))
+    is_beyond = ~is_symmetric & (_needed(v0, v1, high, a, j) > way)
+    if is_beyond.any():
+        every = [np.broadcast_to(values, peak.shape)[is_beyond] for values in (low, high, v0, v1, way, a, j)]
+        peak[is_beyond] = _bisect_velocity(*every)
     return peak
 
 

@@ -92,15 +92,19 @@ class PolylineSchedule:
 
     def motion(self) -> JointMotion:
         """What every axis does."""
-        ends = (self.corners[:-1], self.corners[1:])
         count, axes = self.directions.shape
-        durations, jerks = np.zeros((count, 9)), np.zeros((count, 9, axes))
-        durations[:, :7] = segment_durations(self.runs, *self.limits, ends)
-        jerks[:, :7] = _SIGNS[:, None] * (self.limits[2][:, None] * self.directions)[:, None, :]
+        # Of each run seven segments, and two of the blend after it.
+        durations = np.zeros((count, 9))
+        jerks = np.zeros((count, 9, axes))
+        speeds_at_ends = (self.corners[:-1], self.corners[1:])
+        durations[:, :7] = segment_durations(self.runs, *self.limits, speeds_at_ends)
+        greatest_jerk = self.limits[2][:, None] * self.directions
+        jerks[:, :7] = _SIGNS[:, None] * greatest_jerk[:, None, :]
         durations[:-1, 7:] = self.blends[1:-1, None] / 2
         change = self.corners[1:-1, None] * np.diff(self.directions, axis=0)
         squared = np.where(self.blends > 0, self.blends, 1.0)[1:-1, None] ** 2
-        jerks[:-1, 7], jerks[:-1, 8] = 4 * change / squared, -4 * change / squared
+        jerks[:-1, 7] = 4 * change / squared
+        jerks[:-1, 8] = -4 * change / squared
         return JointMotion(durations.reshape(-1), jerks.reshape(-1, axes), self.start)
 
 

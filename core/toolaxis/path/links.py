@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,17 +70,20 @@ class LeadArcs:
         normal : (3,) array
             Of the surface there.
         """
-        outward = end[0] - end[1]
+        tip, inner = end
+        outward = tip - inner
         size = float(np.linalg.norm(outward))
         if size == 0:
             return np.empty((0, 3))
         outward = outward / size
         up = normal - float(normal @ outward) * outward
         up = up / np.linalg.norm(up)
-        most = 2 * np.arccos(max(1 - self.chord / self.radius, 0.0))
-        count = int(np.clip(np.ceil(np.pi / 2 / max(most, 1e-3)), _FEWEST_CHORDS, _MOST_CHORDS))
+        widest_chord = 2 * np.arccos(max(1 - self.chord / self.radius, 0.0))
+        chords = np.ceil(np.pi / 2 / max(widest_chord, 1e-3))
+        count = int(np.clip(chords, _FEWEST_CHORDS, _MOST_CHORDS))
         turn = np.linspace(np.pi / 2, 0.0, count + 1)[:-1, None]
-        return np.asarray(end[0] + self.radius * (np.sin(turn) * outward + (1 - np.cos(turn)) * up))
+        on_unit_circle = np.sin(turn) * outward + (1 - np.cos(turn)) * up
+        return np.asarray(tip + self.radius * on_unit_circle)
 
 
 @dataclass(frozen=True)
@@ -124,11 +128,11 @@ class Linking:
     lead: LeadArcs | None = None
 
     def __post_init__(self) -> None:
-        for name in ("height", "run_in", "approach"):
-            value = getattr(self, name)
-            if not np.isfinite(value) or (name != "height" and value < 0):
-                raise InvalidInput(f"{name} of the links is {value} mm: it must be finite"
-                                   + (" and zero or more" if name != "height" else ""))
+        if not np.isfinite(self.height):
+            raise InvalidInput(f"height of the links is {self.height} mm: it must be finite")
+        for name, value in (("run_in", self.run_in), ("approach", self.approach)):
+            if not np.isfinite(value) or value < 0:
+                raise InvalidInput(f"{name} of the links is {value} mm: it must be finite and zero or more")
 
 
 def link(passes: list[list[CuttingMove]], axis: Array, linking: Linking) -> ToolPath:
@@ -169,25 +173,33 @@ def link(passes: list[list[CuttingMove]], axis: Array, linking: Linking) -> Tool
     lay_lead_arcs((entries, exits), strokes, (lifted, axes, axes), linking)
     for points, which in ((entries, 0), (exits, -1)):
         raise_link_ends(points, which, axes, linking, lambda tips, _: linking.height - tips @ axis)
-    stays = np.isfinite(over[:, 0])
-    heights = _heights(strokes, (entries, exits, stays), axis, linking)
+    goes_straight = np.isfinite(over[:, 0])
+    heights = _heights(strokes, (entries, exits, goes_straight), axis, linking)
     tips: list[Array] = []
     contacts: list[Array] = []
     normals: list[Array] = []
     kinds: list[NDArray[np.int8]] = []
     for k, stroke in enumerate(strokes):
-        kind = kinds_of(2 + len(entries[k][1:]), len(stroke.tip), 1 + len(exits[k]))
-        before = np.concatenate([_lift_link(entries[k][:1], axis, heights[k]), entries[k]])[2 * stays[k]:]
-        after = np.concatenate([exits[k], _lift_link(exits[k][-1:], axis, heights[k + 1])])
-        if stays[k + 1]:
-            after = np.concatenate([exits[k][:-1], over[k + 1:k + 2]])
+        entry, leaving = entries[k], exits[k]
+        kind = kinds_of(1 + len(entry), len(stroke.tip), 1 + len(leaving))
+        if goes_straight[k]:
+            before = entry[1:]
+            kind = kind[2:]
+        else:
+            before = np.concatenate([_lift_link(entry[:1], axis, heights[k]), entry])
+        if goes_straight[k + 1]:
+            after = np.concatenate([leaving[:-1], over[k + 1:k + 2]])
+            kind = kind[:-1]
+        else:
+            after = np.concatenate([leaving, _lift_link(leaving[-1:], axis, heights[k + 1])])
         tips += [before, stroke.tip, after]
         contacts += [before, stroke.contact, after]
         normals += [np.tile(axis, (len(before), 1)), stroke.normal, np.tile(axis, (len(after), 1))]
-        kinds.append(kind[2 * stays[k]:len(kind) - stays[k + 1]])
+        kinds.append(kind)
     cl = np.concatenate(tips)
-    ends = np.cumsum([len(kind) for kind in kinds])
-    breaks = np.concatenate([[0], ends[np.cumsum([len(some) for some in passes]) - 1]])
+    ends_of_strokes = np.cumsum([len(kind) for kind in kinds])
+    last_strokes = np.cumsum([len(some) for some in passes]) - 1
+    breaks = np.concatenate([[0], ends_of_strokes[last_strokes]])
     return ToolPath(np.concatenate(contacts), cl, np.tile(axis, (len(cl), 1)), np.concatenate(normals),
                     np.concatenate(kinds), breaks.astype(np.int64))
 
@@ -206,15 +218,16 @@ def _over(near: tuple[list[Array], list[Array]], axis: Array, linking: Linking) 
 def _heights(strokes: list[CuttingMove], ends: tuple[list[Array], list[Array], NDArray[np.bool_]], axis: Array,
              linking: Linking) -> Array:
     """Heights along the axis at which the tip comes, crosses from stroke to stroke, and goes, (strokes + 1,) mm."""
-    tops = [float((stroke.tip @ axis).max()) for stroke in strokes]
-    heights = np.full(len(strokes) + 1, max([linking.height, *(top + linking.approach + linking.run_in
-                                                               for top in tops)]))
-    entries, exits, stays = ends
-    rows = np.flatnonzero(~stays[1:-1])
-    if linking.lower is not None and len(rows):
-        end, begin = np.array([exits[k][-1] for k in rows]), np.array([entries[k + 1][0] for k in rows])
-        asked = np.maximum(linking.lower(end, begin), np.maximum(end @ axis, begin @ axis))
-        heights[1 + rows] = np.minimum(heights[1 + rows], asked)
+    above_strokes = [float((stroke.tip @ axis).max()) + linking.approach + linking.run_in for stroke in strokes]
+    heights = np.full(len(strokes) + 1, max([linking.height, *above_strokes]))
+    entries, exits, goes_straight = ends
+    lifted = np.flatnonzero(~goes_straight[1:-1])
+    if linking.lower is not None and len(lifted):
+        end = np.array([exits[k][-1] for k in lifted])
+        begin = np.array([entries[k + 1][0] for k in lifted])
+        higher_end = np.maximum(end @ axis, begin @ axis)
+        allowed = np.maximum(linking.lower(end, begin), higher_end)
+        heights[1 + lifted] = np.minimum(heights[1 + lifted], allowed)
     return heights
 
 
@@ -231,22 +244,28 @@ def kinds_of(before: int, cutting: int, after: int) -> NDArray[np.int8]:
         Numbers of points: the two of the link and those of the entry, those of the stroke, those of the exit and the
         one to which the tip is lifted.
     """
-    return np.array([Motion.LINK, Motion.LINK] + [Motion.ENTRY] * (before - 2) + [Motion.ENTRY]
-                    + [Motion.CUT] * (cutting - 1) + [Motion.EXIT] * (after - 1) + [Motion.LINK], dtype=np.int8)
+    entry = [Motion.LINK] * 2 + [Motion.ENTRY] * (before - 1)
+    cuts = [Motion.CUT] * (cutting - 1)
+    leaving = [Motion.EXIT] * (after - 1) + [Motion.LINK]
+    return np.array(entry + cuts + leaving, dtype=np.int8)
 
 
 def _ramp(end: tuple[Array, Array], normal: Array, axis: Array, run_in: float) -> Array:
     """The far end of a ramp that leaves the first of two tips, away from the second and upwards, mm."""
+    none = np.empty((0, 3))
     start, inner = end
-    flank = float(normal @ axis) < FLANK
+    runs_along_surface = float(normal @ axis) < FLANK
     size = np.linalg.norm(start - inner)
-    direction = axis + normal if flank else axis
+    direction = axis + normal if runs_along_surface else axis
     if run_in > 0 and size > 0:
         direction = direction + (start - inner) / size
-    elif not flank:
-        return np.empty((0, 3))
-    long = np.linalg.norm(direction)
-    return np.empty((0, 3)) if long < 1e-6 else (start + (run_in or ASIDE) * direction / long)[None]
+    elif not runs_along_surface:
+        return none
+    length = np.linalg.norm(direction)
+    if length < 1e-6:
+        return none
+    far_end = start + (run_in or ASIDE) * direction / length
+    return np.asarray(far_end[None])
 
 
 def entry_points(stroke: CuttingMove, axis: Array, linking: Linking) -> Array:
@@ -292,25 +311,46 @@ def lay_lead_arcs(points: tuple[list[Array], list[Array]], strokes: Sequence[Cut
     """
     if linking.lead is None:
         return
+    entries, exits = points
     lifted, first, last = where
-    made: list[tuple[int, int, Array]] = []
+    arcs = []
     for k, stroke in enumerate(strokes):
         if lifted[k]:
             arc = linking.lead.points((stroke.tip[0], stroke.tip[1]), stroke.normal[0])
-            made += [(0, k, np.concatenate([arc[:1] + linking.approach * first[k], arc]))] if len(arc) else []
+            above = arc[:1] + linking.approach * first[k]
+            arcs.append(_LaidArc(k, True, np.concatenate([above, arc]), stroke.tip[0], first[k]))
         if lifted[k + 1]:
             arc = linking.lead.points((stroke.tip[-1], stroke.tip[-2]), stroke.normal[-1])
-            made += [(1, k, np.concatenate([arc[:1] + linking.approach * last[k], arc]))] if len(arc) else []
-    if not made:
-        return
-    ways = [np.concatenate([one, strokes[k].tip[[0 if side == 0 else -1]]]) for side, k, one in made]
-    axes = [np.tile((first, last)[side][k], (len(one), 1)) for side, k, one in made]
-    free = linking.lead.free(np.concatenate([way[:-1] for way in ways]), np.concatenate([way[1:] for way in ways]),
-                             np.concatenate(axes))
-    ends = np.cumsum([len(one) for _, _, one in made])
-    for (side, k, one), whole in zip(made, np.split(free, ends[:-1]), strict=True):
-        if whole.all():
-            points[side][k] = one if side == 0 else one[::-1]
+            above = arc[:1] + linking.approach * last[k]
+            arcs.append(_LaidArc(k, False, np.concatenate([above, arc]), stroke.tip[-1], last[k]))
+    for laid in _free_arcs(arcs, linking.lead):
+        if laid.is_entry:
+            entries[laid.stroke] = laid.points
+        else:
+            exits[laid.stroke] = laid.points[::-1]
+
+
+class _LaidArc(NamedTuple):
+    """An arc at one end of a stroke: its points from above its far end on, the end, (3,) mm, and the axis there."""
+
+    stroke: int
+    is_entry: bool
+    points: Array
+    end: Array
+    axis: Array
+
+
+def _free_arcs(arcs: Sequence[_LaidArc], lead: LeadArcs) -> list[_LaidArc]:
+    """Those of some arcs on which all distances are kept."""
+    there = [arc for arc in arcs if len(arc.points)]
+    if not there:
+        return []
+    ways = [np.concatenate([arc.points, arc.end[None]]) for arc in there]
+    starts = np.concatenate([way[:-1] for way in ways])
+    ends = np.concatenate([way[1:] for way in ways])
+    axes = np.concatenate([np.tile(arc.axis, (len(arc.points), 1)) for arc in there])
+    of_each = np.split(lead.free(starts, ends, axes), np.cumsum([len(arc.points) for arc in there])[:-1])
+    return [arc for arc, is_free in zip(there, of_each, strict=True) if is_free.all()]
 
 
 def raise_link_ends(points: list[Array], which: int, axes: Array, linking: Linking,
@@ -349,15 +389,17 @@ def least_rise(tips: Array, axes: Array, most: Array,
     clear : callable
         Takes both ends of straight ways up (m, 3) and the axes there (m, 3), and answers which are clear, (m,) bool.
     """
-    found, left = most.copy(), np.arange(len(tips))
+    found = most.copy()
+    left = np.arange(len(tips))  # of which no lift is known yet
     for lift in (0.0, *LIFTS):
         left = left[lift < most[left]]
         if not len(left):
             break
         start = tips[left] + lift * axes[left]
-        free = clear(start, tips[left] + most[left, None] * axes[left], axes[left])
-        found[left[free]] = lift
-        left = left[~free]
+        top = tips[left] + most[left, None] * axes[left]
+        is_clear = clear(start, top, axes[left])
+        found[left[is_clear]] = lift
+        left = left[~is_clear]
     return found
 
 
@@ -371,4 +413,5 @@ def near_end(points: Array, axis: Array, linking: Linking) -> Array:
     axis : (3,) array
     linking : Linking
     """
-    return np.asarray(points[1] if len(points) > 1 else points[0] - linking.approach * axis)
+    has_ramp = len(points) > 1
+    return np.asarray(points[1] if has_ramp else points[0] - linking.approach * axis)

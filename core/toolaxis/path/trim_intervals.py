@@ -51,14 +51,17 @@ def intervals(loops: tuple[Array, ...], values: Array, fixed: int) -> Intervals:
     """
     start = np.concatenate(loops)
     end = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
-    a, b = start[:, fixed], end[:, fixed]
-    line, edge = np.nonzero((a > values[:, None]) != (b > values[:, None]))
-    share = (values[line] - a[edge]) / (b[edge] - a[edge])
+    begins_above = start[:, fixed] > values[:, None]
+    ends_above = end[:, fixed] > values[:, None]
+    line, edge = np.nonzero(begins_above != ends_above)
+    start, end = start[edge], end[edge]
+    share = (values[line] - start[:, fixed]) / (end[:, fixed] - start[:, fixed])
     free = 1 - fixed
-    place = start[edge, free] + share * (end[edge, free] - start[edge, free])
-    order = np.lexsort((place, line))
-    line, place = line[order], place[order]
-    return Intervals(line[::2], place[::2], place[1::2])
+    crossing = start[:, free] + share * (end[:, free] - start[:, free])
+    order = np.lexsort((crossing, line))
+    line, crossing = line[order], crossing[order]
+    # Lines are inside the loops from every other crossing to the next.
+    return Intervals(line[::2], crossing[::2], crossing[1::2])
 
 
 def row_points(rows: Intervals, spacing: float, least: int = 4) -> RowPoints:
@@ -94,8 +97,10 @@ def table(rows: Intervals, lines: int) -> Array:
     (lines, k, 2) array of low and high ends, padded with inf; k at least 1
     """
     count = np.bincount(rows.line, minlength=lines)
-    out = np.full((lines, max(1, int(count.max(initial=0))), 2), np.inf)
-    slot = np.arange(len(rows.line)) - (np.cumsum(count) - count)[rows.line]
+    most = max(1, int(count.max(initial=0)))
+    out = np.full((lines, most, 2), np.inf)
+    first = np.cumsum(count) - count
+    slot = np.arange(len(rows.line)) - first[rows.line]
     out[rows.line, slot, 0] = rows.low
     out[rows.line, slot, 1] = rows.high
     return out
@@ -110,15 +115,19 @@ def merge_intervals(rows: Intervals) -> Intervals:
         In any order.
     """
     order = np.lexsort((rows.low, rows.line))
-    line, low, high = rows.line[order], rows.low[order], rows.high[order]
-    keep: list[tuple[int, float, float]] = []
-    for i, a, b in zip(line.tolist(), low.tolist(), high.tolist(), strict=True):
-        if keep and keep[-1][0] == i and a <= keep[-1][2]:
-            keep[-1] = (i, keep[-1][1], max(keep[-1][2], b))
+    lines: list[int] = []
+    lows: list[float] = []
+    highs: list[float] = []
+    for k in order.tolist():
+        line, low, high = int(rows.line[k]), float(rows.low[k]), float(rows.high[k])
+        goes_on = bool(lines) and lines[-1] == line and low <= highs[-1]
+        if goes_on:
+            highs[-1] = max(highs[-1], high)
         else:
-            keep.append((i, a, b))
-    whole = np.array(keep, dtype=float).reshape(-1, 3)
-    return Intervals(whole[:, 0].astype(np.intp), whole[:, 1], whole[:, 2])
+            lines.append(line)
+            lows.append(low)
+            highs.append(high)
+    return Intervals(np.array(lines, dtype=np.intp), np.array(lows, dtype=float), np.array(highs, dtype=float))
 
 
 def filter_intervals(rows: Intervals, test: Callable[[Index, Array], NDArray[np.bool_]], spacing: float,
@@ -140,23 +149,22 @@ def filter_intervals(rows: Intervals, test: Callable[[Index, Array], NDArray[np.
     points = row_points(rows, spacing)
     line, place = rows.line[points.interval], points.along
     holds = test(line, place)
-    before = np.append(False, holds[:-1] & (points.interval[1:] == points.interval[:-1]))
-    after = np.append(holds[1:] & (points.interval[1:] == points.interval[:-1]), False)
-    low, high = np.flatnonzero(holds & ~before), np.flatnonzero(holds & ~after)
-    before_low = np.where(_same(points.interval, low, -1), low - 1, low)
-    after_high = np.where(_same(points.interval, high, 1), high + 1, high)
-    ends = _edge(test, np.append(line[low], line[high]), place[np.append(low, high)],
-                 place[np.append(before_low, after_high)], exact)
+    is_same_interval = points.interval[1:] == points.interval[:-1]
+    holds_before = np.append(False, holds[:-1] & is_same_interval)
+    holds_after = np.append(holds[1:] & is_same_interval, False)
+    low = np.flatnonzero(holds & ~holds_before)
+    high = np.flatnonzero(holds & ~holds_after)
+    # The ends of each part lie between these points and their neighbours, where the interval goes on to these.
+    has_before = np.append(False, is_same_interval)[low]
+    has_after = np.append(is_same_interval, False)[high]
+    good = np.append(low, high)
+    bad = np.append(low - has_before, high + has_after)
+    ends = _find_ends(test, line[good], place[good], place[bad], exact)
     return Intervals(line[low], ends[:len(low)], ends[len(low):])
 
 
-def _same(interval: Index, i: Index, shift: int) -> NDArray[np.bool_]:
-    other = np.clip(i + shift, 0, len(interval) - 1)
-    return np.asarray((other != i) & (interval[other] == interval[i]))
-
-
-def _edge(test: Callable[[Index, Array], NDArray[np.bool_]], line: Index, good: Array, bad: Array,
-          exact: float) -> Array:
+def _find_ends(test: Callable[[Index, Array], NDArray[np.bool_]], line: Index, good: Array, bad: Array,
+               exact: float) -> Array:
     """Last place on each line, from a good one towards a bad one, at which the test holds."""
     good, bad = good.copy(), bad.copy()
     while True:
@@ -182,10 +190,12 @@ def first_from(columns: Array, place: Array) -> Array:
     -------
     (n,) array; inf where nothing is left.
     """
-    start = np.maximum(columns[..., 0], place[:, None])
-    return np.asarray(np.where(columns[..., 1] > start, start, np.inf).min(axis=1))
+    low, high = columns[..., 0], columns[..., 1]
+    start = np.maximum(low, place[:, None])
+    return np.asarray(np.where(high > start, start, np.inf).min(axis=1))
 
 
 def last_of(columns: Array) -> Array:
     """Last place on the face of each column, (n,); -inf where a column misses it."""
-    return np.asarray(np.where(np.isfinite(columns[..., 1]), columns[..., 1], -np.inf).max(axis=1))
+    high = columns[..., 1]
+    return np.asarray(np.where(np.isfinite(high), high, -np.inf).max(axis=1))

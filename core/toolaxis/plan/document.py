@@ -47,7 +47,13 @@ def _finite(values: Array) -> list[float | None]:
 
 
 def _finite_or_none(value: float) -> float | None:
+    """A number as JSON takes it: infinite ones are written as null."""
     return float(value) if np.isfinite(value) else None
+
+
+def _infinite_if_none(value: Any) -> Any:
+    """What `_finite_or_none` wrote, as it was."""
+    return np.inf if value is None else value
 
 
 def tool_document(tool: Tool) -> Document:
@@ -57,10 +63,21 @@ def tool_document(tool: Tool) -> Document:
     ----------
     tool : Tool
     """
-    return {"name": tool.name, "kind": tool.kind, "radius": tool.radius, "corner_radius": tool.corner_radius,
-            "half_angle": tool.half_angle, "flute_length": tool.flute_length, "stickout": tool.stickout,
-            "shank": _rows(tool.shank), "holder": _rows(tool.holder), "title": tool.title, "number": tool.number,
-            "feedrate": tool.feedrate, "spindle": tool.spindle}
+    return {
+        "name": tool.name,
+        "kind": tool.kind,
+        "radius": tool.radius,
+        "corner_radius": tool.corner_radius,
+        "half_angle": tool.half_angle,
+        "flute_length": tool.flute_length,
+        "stickout": tool.stickout,
+        "shank": _rows(tool.shank),
+        "holder": _rows(tool.holder),
+        "title": tool.title,
+        "number": tool.number,
+        "feedrate": tool.feedrate,
+        "spindle": tool.spindle,
+    }
 
 
 def tool_from(document: Mapping[str, Any]) -> Tool:
@@ -82,8 +99,13 @@ def tool_from(document: Mapping[str, Any]) -> Tool:
 def _map_document(found: AxisMap | None) -> Document | None:
     if found is None:
         return None
-    return {"axis": _rows(found.axis), "passes": _finite(found.passes), "length": _finite(found.length),
-            "reason": found.reason.tolist(), "amount": _finite(found.amount)}
+    return {
+        "axis": _rows(found.axis),
+        "passes": _finite(found.passes),
+        "length": _finite(found.length),
+        "reason": found.reason.tolist(),
+        "amount": _finite(found.amount),
+    }
 
 
 def _map_from(document: Mapping[str, Any] | None) -> AxisMap | None:
@@ -91,10 +113,11 @@ def _map_from(document: Mapping[str, Any] | None) -> AxisMap | None:
         return None
 
     def _numbers(name: str) -> Array:
-        return np.array([np.inf if v is None else v for v in document[name]], dtype=float)
+        return np.array([_infinite_if_none(value) for value in document[name]], dtype=float)
 
-    return AxisMap(np.array(document["axis"], dtype=float).reshape(-1, 3), _numbers("passes"), _numbers("length"),
-                   np.array(document["reason"], dtype=np.int8), _numbers("amount"))
+    axis = np.array(document["axis"], dtype=float).reshape(-1, 3)
+    reason = np.array(document["reason"], dtype=np.int8)
+    return AxisMap(axis, _numbers("passes"), _numbers("length"), reason, _numbers("amount"))
 
 
 def orientation_document(found: Orientation) -> Document:
@@ -127,13 +150,19 @@ def orientation_from(document: Mapping[str, Any]) -> Orientation:
     ----------
     document : mapping
     """
-    scalars: dict[str, Any] = {name: np.inf if document[name] is None else document[name] for name in _SCALARS}
+    scalars = {name: _infinite_if_none(document[name]) for name in _SCALARS}
     axis = document["axis"]
-    return Orientation(axis=None if axis is None else np.array(axis, dtype=float), **scalars,
-                       clearance={k: np.inf if v is None else v for k, v in document["clearance"].items()},
-                       reasons=tuple(document["reasons"]), map=_map_from(document["map"]), lead=document.get("lead"),
-                       pattern=document.get("pattern", ISO), ideal=document.get("ideal", 0.0),
-                       lobes=tuple(orientation_from(lobe) for lobe in document["lobes"]))
+    return Orientation(
+        axis=None if axis is None else np.array(axis, dtype=float),
+        clearance={name: _infinite_if_none(value) for name, value in document["clearance"].items()},
+        reasons=tuple(document["reasons"]),
+        map=_map_from(document["map"]),
+        lead=document.get("lead"),
+        pattern=document.get("pattern", ISO),
+        ideal=document.get("ideal", 0.0),
+        lobes=tuple(orientation_from(lobe) for lobe in document["lobes"]),
+        **scalars,
+    )
 
 
 def _frame_document(frame: WorkCoordinates | None) -> Document | None:
@@ -186,8 +215,12 @@ def zone_documents(zones: Sequence[Zone]) -> list[Document]:
     ----------
     zones : sequence of Zone
     """
-    return [{**asdict(zone), "loops": [_rows(loop) for loop in zone.loops], "avoided": list(zone.avoided)}
-            for zone in zones]
+    return [_zone_document(zone) for zone in zones]
+
+
+def _zone_document(zone: Zone) -> Document:
+    loops = [_rows(loop) for loop in zone.loops]
+    return {**asdict(zone), "loops": loops, "avoided": list(zone.avoided)}
 
 
 def zones_from(documents: Sequence[Mapping[str, Any]]) -> tuple[Zone, ...]:
@@ -197,24 +230,45 @@ def zones_from(documents: Sequence[Mapping[str, Any]]) -> tuple[Zone, ...]:
     ----------
     documents : sequence of mapping
     """
-    return tuple(Zone(**{**zone, "loops": tuple(np.array(loop, dtype=float) for loop in zone["loops"]),
-                         "avoided": tuple(zone.get("avoided", ()))}) for zone in documents)
+    return tuple(_zone_from(document) for document in documents)
+
+
+def _zone_from(document: Mapping[str, Any]) -> Zone:
+    loops = tuple(np.array(loop, dtype=float) for loop in document["loops"])
+    avoided = tuple(document.get("avoided", ()))
+    return Zone(**{**document, "loops": loops, "avoided": avoided})
 
 
 def _operation_document(op: Operation, plan: Plan, cl_file: str | None, failure_file: str | None) -> Document:
-    path = op.path
-    return {"number": op.number, "name": op.name, "face": op.face.number, "faces": list(op.face.numbers),
-            "label": op.face.label, "tool": 1 + plan.tools.index(op.tool),
-            "rest_of": list(op.rest_of), "unreachable": op.unreachable,
-            "kind": op.face.kind, "area": op.face.area, "surface_tolerance": op.face.tolerance,
-            "region": region_of(op.face, plan.part),
-            "orientation": orientation_document(op.orientation), "work_coordinates": _frame_document(op.frame),
-            "cl_file": cl_file, "failure_file": failure_file, "travel": op.travel,
-            "points": 0 if path is None else len(path.cl),
-            "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
-            "time": None if op.time is None else {**asdict(op.time), "rotary": list(op.time.rotary)},
-            "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
-            "zones": zone_documents(op.zones)}
+    face = op.face
+    return {
+        "number": op.number,
+        "name": op.name,
+        "face": face.number,
+        "faces": list(face.numbers),
+        "label": face.label,
+        "tool": 1 + plan.tools.index(op.tool),
+        "rest_of": list(op.rest_of),
+        "unreachable": op.unreachable,
+        "kind": face.kind,
+        "area": face.area,
+        "surface_tolerance": face.tolerance,
+        "region": region_of(face, plan.part),
+        "orientation": orientation_document(op.orientation),
+        "work_coordinates": _frame_document(op.frame),
+        "cl_file": cl_file,
+        "failure_file": failure_file,
+        "travel": op.travel,
+        "points": 0 if op.path is None else len(op.path.cl),
+        "seconds": op.seconds(plan.inputs.feedrate, plan.inputs.rapid),
+        "time": _time_document(op.time),
+        "rotary": _rows(rotary_of(plan.machine, op, op.tool.gauge_length)),
+        "zones": zone_documents(op.zones),
+    }
+
+
+def _time_document(time: MachiningTime | None) -> Document | None:
+    return None if time is None else {**asdict(time), "rotary": list(time.rotary)}
 
 
 def account_document(found: PartAccount) -> Document:
@@ -224,8 +278,16 @@ def account_document(found: PartAccount) -> Document:
     ----------
     found : PartAccount
     """
-    return {"area": found.area, "machined": found.machined, "unreachable": found.unreachable, "open": found.open,
-            "not_begun": found.not_begun, "length": found.length, "bound": found.bound or None, "gap": found.gap}
+    return {
+        "area": found.area,
+        "machined": found.machined,
+        "unreachable": found.unreachable,
+        "open": found.open,
+        "not_begun": found.not_begun,
+        "length": found.length,
+        "bound": found.bound or None,
+        "gap": found.gap,
+    }
 
 
 def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
@@ -246,21 +308,13 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
     """
     failures = files.get("failures") or [None] * len(plan.operations)
     return {
-        "schema": NAME, "version": VERSION,
+        "schema": NAME,
+        "version": VERSION,
         "units": {"length": "mm", "angle": "rad", "feedrate": "mm/min", "spindle": "rev/min"},
-        "part": {**files["part"], "source": plan.part.source, "unit": plan.part.unit,
-                 "faces": len((plan.part.original or plan.part).faces), "warnings": list(plan.part.warnings),
-                 "joined": [list(face.numbers) for face in plan.part.faces if face.members],
-                 "stock_faces": [] if plan.part.stock is None else sorted(plan.part.stock.faces),
-                 "seams": [seam.document for seam in (plan.part.original or plan.part).seams],
-                 **account_document(plan.account),
-                 "held": [one._asdict() for one in plan.held],
-                 "machined_before": [one._asdict() for one in plan.machined_before],
-                 "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned]},
+        "part": {**files["part"], **_part_document(plan)},
         "obstacles": list(files["obstacles"]),
         "tools": [tool_document(tool) for tool in plan.tools],
-        "inputs": {**asdict(plan.inputs), "avoid": list(plan.inputs.avoid),
-                   "allowance_on": [list(pair) for pair in plan.inputs.allowance_on]},
+        "inputs": _inputs_document(plan.inputs),
         "datum": _rows(plan.datum),
         "outcome": plan.outcome,
         "not_checked": list(plan.not_checked),
@@ -268,20 +322,56 @@ def plan_document(plan: Plan, files: Mapping[str, Any]) -> Document:
         "travel": plan.travel,
         "orientations": plan.orientations,
         "seconds": plan.seconds,
-        "baselines": [{name: value for name, value in asdict(one).items() if name != "title"}
-                      for one in plan.baselines],
+        "baselines": [_baseline_document(baseline) for baseline in plan.baselines],
         "blades": blades_document(plan.blades),
         "machine": machine_document(plan.machine),
-        "order": None if plan.order is None else {
-            **asdict(plan.order), "listed": plan.order.listed if np.isfinite(plan.order.listed) else None},
+        "order": _order_document(plan.order),
         "in_the_way": list(plan.in_the_way),
         "faults": [one.sentence for one in plan.faults],
         "failure_file": files.get("failure"),
-        "options": [{name: value for name, value in asdict(option).items() if value is not None}
-                    for option in plan.options],
+        "options": [_option_document(option) for option in plan.options],
         "operations": [_try_document(op, plan, names)
                        for op, *names in zip(plan.operations, files["operations"], failures, strict=True)],
     }
+
+
+def _part_document(plan: Plan) -> Document:
+    """What is told of the part besides its file."""
+    part = plan.part
+    as_read = part.original or part
+    return {
+        "source": part.source,
+        "unit": part.unit,
+        "faces": len(as_read.faces),
+        "warnings": list(part.warnings),
+        "joined": [list(face.numbers) for face in part.faces if face.members],
+        "stock_faces": [] if part.stock is None else sorted(part.stock.faces),
+        "seams": [seam.document for seam in as_read.seams],
+        **account_document(plan.account),
+        "held": [one._asdict() for one in plan.held],
+        "machined_before": [one._asdict() for one in plan.machined_before],
+        "unplanned": [{**one._asdict(), "point": list(one.point)} for one in plan.unplanned],
+    }
+
+
+def _inputs_document(inputs: PlanInputs) -> Document:
+    allowance_on = [list(pair) for pair in inputs.allowance_on]
+    return {**asdict(inputs), "avoid": list(inputs.avoid), "allowance_on": allowance_on}
+
+
+def _baseline_document(baseline: Baseline) -> Document:
+    return {name: value for name, value in asdict(baseline).items() if name != "title"}
+
+
+def _order_document(order: Order | None) -> Document | None:
+    if order is None:
+        return None
+    listed = order.listed if np.isfinite(order.listed) else None
+    return {**asdict(order), "listed": listed}
+
+
+def _option_document(option: Option) -> Document:
+    return {name: value for name, value in asdict(option).items() if value is not None}
 
 
 def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Document:
@@ -295,21 +385,54 @@ def _try_document(op: Operation, plan: Plan, names: Sequence[str | None]) -> Doc
 def _operation_from(document: Mapping[str, Any], part: Part, tools: Sequence[Tool],
                     path: ToolPath | None) -> Operation:
     face = sub_surface_from(part, document["face"], document["label"], document["region"])
-    frame = document["work_coordinates"]
-    axes = None if frame is None else WorkCoordinates(**{k: np.array(v, dtype=float) for k, v in frame.items()})
+    tool = tools[document["tool"] - 1]
+    orientation = orientation_from(document["orientation"])
+    frame = _frame_from(document["work_coordinates"])
     zones = zones_from(document.get("zones", ()))
-    time = document.get("time")
-    known = None if time is None else MachiningTime(**{**time, "rotary": tuple(time["rotary"])})
-    rotary = document.get("rotary") or [()]
-    return Operation(document["number"], face, tools[document["tool"] - 1], orientation_from(document["orientation"]),
-                     path, axes, zones, known, tuple(rotary[0]), tuple(document["rest_of"]),
-                     unreachable=document["unreachable"])
+    time = _time_from(document.get("time"))
+    solutions = document.get("rotary") or [()]
+    rotary = tuple(solutions[0])
+    return Operation(document["number"], face, tool, orientation, path, frame, zones, time, rotary,
+                     tuple(document["rest_of"]), unreachable=document["unreachable"])
+
+
+def _frame_from(document: Mapping[str, Any] | None) -> WorkCoordinates | None:
+    if document is None:
+        return None
+    return WorkCoordinates(**{name: np.array(row, dtype=float) for name, row in document.items()})
+
+
+def _time_from(document: Mapping[str, Any] | None) -> MachiningTime | None:
+    return None if document is None else MachiningTime(**{**document, "rotary": tuple(document["rotary"])})
 
 
 def _order_from(document: Mapping[str, Any] | None) -> Order | None:
     if document is None:
         return None
-    return Order(**{**document, "listed": np.inf if document["listed"] is None else document["listed"]})
+    return Order(**{**document, "listed": _infinite_if_none(document["listed"])})
+
+
+def _inputs_from(document: Mapping[str, Any]) -> PlanInputs:
+    tolerance = Tolerance(**document["tolerance"])
+    avoid = tuple(document.get("avoid", ()))
+    pairs = document.get("allowance_on", ())
+    allowance_on = tuple((int(number), float(value)) for number, value in pairs)
+    return PlanInputs(**{**document, "tolerance": tolerance, "avoid": avoid, "allowance_on": allowance_on})
+
+
+def _part_from(document: Mapping[str, Any], inputs: PlanInputs, part: Part) -> Part:
+    """The part that a plan was made for, from the one in its file: faces joined, and with the stock that is left."""
+    part = inputs.prepare_part(part)
+    for numbers in document["part"].get("joined", ()):
+        part = join(part, numbers, np.inf, np.inf)
+    if inputs.stock > 0:
+        machined = {number for record in document["operations"] for number in record["faces"]}
+        part = part.with_stock(inputs.stock, machined.union(document["part"].get("stock_faces", ())))
+    return part
+
+
+def _unplanned_from(document: Mapping[str, Any]) -> UnplannedArea:
+    return UnplannedArea(**{**document, "point": tuple(document["point"])})
 
 
 def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part],
@@ -331,29 +454,24 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
         When the document breaks the schema or names a face that the part does not have.
     """
     check(document)
-    given = dict(document["inputs"])
-    inputs = PlanInputs(**{**given, "tolerance": Tolerance(**given["tolerance"]),
-                           "avoid": tuple(given.get("avoid", ())),
-                           "allowance_on": tuple((int(number), float(value))
-                                                 for number, value in given.get("allowance_on", ()))})
-    part = inputs.prepare_part(part)
-    for numbers in document["part"].get("joined", ()):
-        part = join(part, numbers, np.inf, np.inf)
+    inputs = _inputs_from(document["inputs"])
+    part = _part_from(document, inputs, part)
     tools = tuple(tool_from(one) for one in document["tools"])
-    if inputs.stock > 0:
-        own = {number for record in document["operations"] for number in record["faces"]}
-        part = part.with_stock(inputs.stock, own.union(document["part"].get("stock_faces", ())))
     operations = tuple(_operation_from(record, part, tools, path)
                        for record, path in zip(document["operations"], paths, strict=True))
-    return Plan(part, tools, inputs, operations, tuple(obstacles),
-                np.array(document["datum"], dtype=float), document["outcome"],
-                tuple(Option(**option) for option in document.get("options", ())),
-                tuple(Baseline(**one) for one in document.get("baselines", ())),
-                blades_from(document.get("blades"), len(operations)), machine_from(document.get("machine")),
-                _order_from(document.get("order")), tuple(document.get("in_the_way", ())),
-                tuple(Fault(sentence) for sentence in document.get("faults", ())),
-                held=tuple(HeldFace(**one) for one in document["part"].get("held", ())),
-                machined_before=tuple(MachinedBefore(**one)
-                                      for one in document["part"].get("machined_before", ())),
-                unplanned=tuple(UnplannedArea(**{**one, "point": tuple(one["point"])})
-                                for one in document["part"].get("unplanned", ())))
+    of_part = document["part"]
+    return Plan(
+        part, tools, inputs, operations, tuple(obstacles),
+        datum=np.array(document["datum"], dtype=float),
+        outcome=document["outcome"],
+        options=tuple(Option(**one) for one in document.get("options", ())),
+        baselines=tuple(Baseline(**one) for one in document.get("baselines", ())),
+        blades=blades_from(document.get("blades"), len(operations)),
+        machine=machine_from(document.get("machine")),
+        order=_order_from(document.get("order")),
+        in_the_way=tuple(document.get("in_the_way", ())),
+        faults=tuple(Fault(sentence) for sentence in document.get("faults", ())),
+        held=tuple(HeldFace(**one) for one in of_part.get("held", ())),
+        machined_before=tuple(MachinedBefore(**one) for one in of_part.get("machined_before", ())),
+        unplanned=tuple(_unplanned_from(one) for one in of_part.get("unplanned", ())),
+    )

@@ -53,14 +53,19 @@ def reckon_axes(job: FaceProblem, scene: ReachScene, axes: Array, own: int, rate
     face, tool = worth.face, worth.tool
     size = min(_SIZE * tool.radius, _ACROSS * mean_width(face))
     cells = FaceCells.sized(face, max(size, (face.area / _CELLS) ** 0.5))
-    wide = widths(cells, [tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0]
-    held = ReachScreen(cells, tighten_scene(job, scene)).screen([tool], axes, (wide > 0)[None])[0]
-    reached = held @ cells.area
-    if not reached[own] > 0:
+    strip = widths(cells, [tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0]
+    screen = ReachScreen(cells, tighten_scene(job, scene))
+    is_reached = screen.screen([tool], axes, (strip > 0)[None])[0]
+    area = is_reached @ cells.area
+    if not area[own] > 0:
         return (AxisTime(own, 0.0),)
-    seconds = np.where(held, cells.area / np.where(held, wide, 1.0), 0.0).sum(axis=1) / rate
-    good = np.flatnonzero((reached >= (1 - _MISSED) * reached[own]) & (seconds <= seconds[own] + move))
-    return tuple(AxisTime(int(k), float(seconds[k])) for k in good[np.argsort(seconds[good], kind="stable")])
+    lengths = np.where(is_reached, cells.area / np.where(is_reached, strip, 1.0), 0.0)
+    seconds = lengths.sum(axis=1) / rate
+    reaches_enough = area >= (1 - _MISSED) * area[own]
+    is_quick = seconds <= seconds[own] + move
+    good = np.flatnonzero(reaches_enough & is_quick)
+    quickest_first = good[np.argsort(seconds[good], kind="stable")]
+    return tuple(AxisTime(int(k), float(seconds[k])) for k in quickest_first)
 
 
 def choose_axes(options: Sequence[Sequence[AxisTime]], used: Collection[int], move: float) -> tuple[int, ...]:

@@ -179,11 +179,18 @@ class _Cone(NamedTuple):
     @staticmethod
     def each_of(cones: AxisCones) -> list["_Cone"]:
         """Some cones, one by one."""
-        low, high = np.tan(cones.place - cones.half[:, None]), np.tan(cones.place + cones.half[:, None])
-        slope, spread = (low + high) / 2, (high - low) / 2
+        low = np.tan(cones.place - cones.half[:, None])
+        high = np.tan(cones.place + cones.half[:, None])
+        slopes = ((low + high) / 2).tolist()
+        spreads = ((high - low) / 2).tolist()
         axis, radius = cones.middle, cones.radius
-        return [_Cone(axis[k], float(radius[k]), int(side) % 3, 1 if side < 3 else -1, (float(slope[k, 0]), float(
-            slope[k, 1])), (float(spread[k, 0]), float(spread[k, 1]))) for k, side in enumerate(cones.side)]
+        found = []
+        for k, side in enumerate(cones.side.tolist()):
+            forth = 1 if side < 3 else -1
+            p, q = slopes[k]
+            spread_p, spread_q = spreads[k]
+            found.append(_Cone(axis[k], float(radius[k]), side % 3, forth, (p, q), (spread_p, spread_q)))
+        return found
 
 
 class _Shadow:

@@ -82,11 +82,13 @@ def first_rectangles(face: Face) -> FaceRectangles:
 
 def _shape_for(face: Face) -> tuple[int, int]:
     """Cells along u and along v, about as long as they are wide."""
-    along, across = (float(np.median(lengths.sum(axis=way)))
-                     for way, lengths in enumerate(Lattice(face, (_COARSE, _COARSE)).lengths))
+    lengths_u, lengths_v = Lattice(face, (_COARSE, _COARSE)).lengths
+    along = float(np.median(lengths_u.sum(axis=0)))
+    across = float(np.median(lengths_v.sum(axis=1)))
     ratio = np.sqrt(along / across) if along > 0 and across > 0 else 1.0
-    count = np.clip(np.ceil(np.sqrt(_CELLS) * np.array([ratio, 1 / ratio])), _FEWEST, _CELLS // _FEWEST)
-    return int(count[0]), int(count[1])
+    wanted = np.ceil(np.sqrt(_CELLS) * np.array([ratio, 1 / ratio]))
+    count_u, count_v = np.clip(wanted, _FEWEST, _CELLS // _FEWEST)
+    return int(count_u), int(count_v)
 
 
 def halve_rectangles(face: Face, cells: FaceRectangles) -> tuple[FaceRectangles, Indices]:
@@ -99,20 +101,26 @@ def halve_rectangles(face: Face, cells: FaceRectangles) -> tuple[FaceRectangles,
 
 def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[FaceRectangles, Bools]:
     """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
-    ways = grid_rows(_PLACES, _PLACES)
-    inside = face.contains((middle[:, None] + _WITHIN * ways * half[:, None]).reshape(-1, 2)).reshape(-1, 9)
-    kept = np.asarray(inside.any(axis=1))
-    middle, half, inside = middle[kept], half[kept], inside[kept]
-    uv = (middle[:, None] + ways * half[:, None]).reshape(-1, 2)
-    d, normals = face.evaluate(uv), face.normal(uv).reshape(-1, 9, 3)
-    points, size = d.point.reshape(-1, 9, 3), np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(-1, 9)
-    known = np.linalg.norm(normals, axis=2) > 0.5
-    pick = np.argmin(np.where(inside & known, np.hypot(*ways.T), np.inf), axis=1)
-    one = np.arange(len(middle))
-    point, normal = points[one, pick], normals[one, pick]
+    places = grid_rows(_PLACES, _PLACES)  # nine in each, in halves of it
+    looked_at = (middle[:, None] + _WITHIN * places * half[:, None]).reshape(-1, 2)
+    is_inside = face.contains(looked_at).reshape(-1, 9)
+    kept = np.asarray(is_inside.any(axis=1))
+    middle, half, is_inside = middle[kept], half[kept], is_inside[kept]
+    uv = (middle[:, None] + places * half[:, None]).reshape(-1, 2)
+    d = face.evaluate(uv)
+    points = d.point.reshape(-1, 9, 3)
+    normals = face.normal(uv).reshape(-1, 9, 3)
+    has_normal = np.linalg.norm(normals, axis=2) > 0.5
+    # A cell stands for the place on the face that is nearest to its middle.
+    from_middle = np.where(is_inside & has_normal, np.hypot(*places.T), np.inf)
+    chosen = np.argmin(from_middle, axis=1)
+    row = np.arange(len(middle))
+    point, normal = points[row, chosen], normals[row, chosen]
     off = np.linalg.norm(points - point[:, None], axis=2).max(axis=1, initial=0.0)
-    turn = np.where(known, np.asarray(angle_between(normals, normal[:, None])), np.pi).max(axis=1, initial=0.0)
-    share = np.where(inside, size, 0.0).mean(axis=1) * half.prod(axis=1)
+    turns = np.where(has_normal, np.asarray(angle_between(normals, normal[:, None])), np.pi)
+    turn = turns.max(axis=1, initial=0.0)
+    density = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(-1, 9)
+    share = np.where(is_inside, density, 0.0).mean(axis=1) * half.prod(axis=1)
     whole = float(share.sum())
     if whole > 0:  # of a sliver no cell may have a place
         share *= area / whole

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import radians
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,8 @@ _NAMED = 8
 _FINE = 4
 #: Way by which rounding moves points, mm.
 _ROUNDING = 1e-9
+#: Places along a side at which the speed across it is taken.
+_SPEEDS = 17
 #: Greatest angle by which iso-parametric lines may turn across a join, rad.
 GREATEST_CORNER = radians(30.0)
 
@@ -82,19 +85,21 @@ def join_patches(faces: Sequence[Face], meetings: Sequence[SharedBoundary], tole
     grid = arrange_patches(faces, meetings)
     patches = align_parameters(grid)
     ranges = tuple([range_of(grid, patches, axis, k) for k in range(grid.shape[axis])] for axis in (0, 1))
-    surfaces = alike(grid, {cell: surface_over(patches[cell], _box(ranges, cell)) for cell in patches})
-    surfaces = _match_weights(grid, surfaces, tolerance)
+    over_boxes = {cell: surface_over(patch, _box(ranges, cell)) for cell, patch in patches.items()}
+    surfaces = _match_weights(grid, alike(grid, over_boxes), tolerance)
     lines = tuple(_lines(grid, surfaces, ranges[axis], axis) for axis in (0, 1))
     surface, moved = _assemble_patches(grid, surfaces, lines)
     places = tuple([*pairwise(line)] for line in lines)
-    members = {cell: _member(patch, _box(ranges, cell), _box(places, cell)) for cell, patch in patches.items()}
+    members = [_member(patch, _box(ranges, cell), _box(places, cell)) for cell, patch in patches.items()]
+    in_order = tuple(member for face in faces for member in members if member.face is face)
     kinds = {face.kind for face in faces}
     kind = kinds.pop() if len(kinds) == 1 else "bspline"
-    made = Face(surface, (), faces[0].flip, faces[0].number, name_of(faces), kind,
-                max(face.tolerance for face in faces) + (moved if moved > _ROUNDING else 0.0), _kinks(members, lines),
-                tuple(members[cell] for face in faces for cell in members if members[cell].face is face))
-    _check_turns(made, corner)
-    return replace(made, trims=_outline(made, lines))
+    own_tolerance = max(face.tolerance for face in faces) + (moved if moved > _ROUNDING else 0.0)
+    first = faces[0]
+    whole = Face(surface, (), first.flip, first.number, name_of(faces), kind, own_tolerance, _kinks(members, lines),
+                 in_order)
+    _check_turns(whole, corner)
+    return replace(whole, trims=_outline(whole, lines))
 
 
 def name_of(faces: Sequence[Face]) -> str:
@@ -120,14 +125,17 @@ def _border(surface: NurbsSurface, axis: int, end: int) -> Array:
 
 def _match_weights(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: float) -> dict[Cell, NurbsSurface]:
     """The same surfaces with weights that agree on common borders, where these are the same within the tolerance."""
+    # Along the diagonals: what is before a cell then has its weights already.
     for cell in sorted(surfaces, key=lambda c: (c[0] + c[1], c)):
-        beside = [(before, axis) for axis, before in ((0, (cell[0] - 1, cell[1])), (1, (cell[0], cell[1] - 1)))
-                  if before in surfaces]
-        for before, axis in beside[:1]:
-            share = _border(surfaces[before], axis, 1)[:, 3] / _border(surfaces[cell], axis, 0)[:, 3]
-            surfaces[cell] = replace(surfaces[cell], control=surfaces[cell].control * float(np.median(share)))
-        for before, axis in beside:
-            off = _apart(surfaces[before], surfaces[cell], axis)
+        neighbours = [neighbour for neighbour in _neighbours_before(cell) if neighbour.cell in surfaces]
+        if neighbours:
+            before, axis = neighbours[0]
+            weights_before = _border(surfaces[before], axis, 1)[:, 3]
+            weights = _border(surfaces[cell], axis, 0)[:, 3]
+            factor = float(np.median(weights_before / weights))
+            surfaces[cell] = replace(surfaces[cell], control=surfaces[cell].control * factor)
+        for before, axis in neighbours:
+            off = _border_distance(surfaces[before], surfaces[cell], axis)
             if off > tolerance:
                 a, b = grid.faces[before].label, grid.faces[cell].label
                 raise UnsupportedGeometry(f"faces {a} and {b} cannot be joined: their borders are the same curve only "
@@ -136,10 +144,24 @@ def _match_weights(grid: Grid, surfaces: dict[Cell, NurbsSurface], tolerance: fl
     return surfaces
 
 
-def _apart(one: NurbsSurface, other: NurbsSurface, axis: int) -> float:
+class _Neighbour(NamedTuple):
+    """A cell beside another one, and the axis that leads from the one to the other."""
+
+    cell: Cell
+    axis: int
+
+
+def _neighbours_before(cell: Cell) -> tuple[_Neighbour, _Neighbour]:
+    column, row = cell
+    return _Neighbour((column - 1, row), 0), _Neighbour((column, row - 1), 1)
+
+
+def _border_distance(one: NurbsSurface, other: NurbsSurface, axis: int) -> float:
     """Greatest way between the last side of a surface and the first of another at equal parameters, at most, mm."""
-    knots, degree = knots_along(one, 1 - axis), one.degree[1 - axis]
-    own, now = _border(other, axis, 0), _border(one, axis, 1)
+    knots = knots_along(one, 1 - axis)
+    degree = one.degree[1 - axis]
+    own = _border(other, axis, 0)
+    now = _border(one, axis, 1)
     rough = _greatest_move(own, now)
     if rough <= _ROUNDING:
         return rough
@@ -167,11 +189,15 @@ def _greatest_move(own: Array, now: Array) -> float:
         Homogeneous control points of the one and the other, on the same knots; of pieces where there are more axes.
     """
     change = now - own
+    weight_change = change[..., 3]
     points = own[..., :3] / own[..., 3:]
+    # With S taken from a middle of the points the terms stay small.
     middle = points.mean(axis=-2, keepdims=True)
     reach = np.linalg.norm(points - middle, axis=-1).max(axis=-1)
-    shift = np.linalg.norm(change[..., :3] - middle * change[..., 3:], axis=-1).max(axis=-1)
-    return float(((shift + reach * np.abs(change[..., 3]).max(axis=-1)) / now[..., 3].min(axis=-1)).max())
+    shift = np.linalg.norm(change[..., :3] - middle * weight_change[..., None], axis=-1).max(axis=-1)
+    numerator = shift + reach * np.abs(weight_change).max(axis=-1)
+    least_weight = now[..., 3].min(axis=-1)
+    return float((numerator / least_weight).max())
 
 
 def _surface_moved(surface: NurbsSurface, control: Array) -> float:
@@ -179,88 +205,123 @@ def _surface_moved(surface: NurbsSurface, control: Array) -> float:
     rough = _greatest_move(surface.control.reshape(-1, 4), control.reshape(-1, 4))
     if rough <= _ROUNDING:
         return rough
-    lines = _breaks(surface.knots_u), _breaks(surface.knots_v)
-    own, now = (bezier_nets((surface.knots_u, surface.knots_v, net, *surface.degree, True), *lines)
-                for net in (surface.control, control))
-    return _greatest_move(own.reshape(*own.shape[:2], -1, 4), now.reshape(*now.shape[:2], -1, 4))
+    own = _points_of_pieces(surface, surface.control)
+    now = _points_of_pieces(surface, control)
+    return _greatest_move(own, now)
+
+
+def _points_of_pieces(surface: NurbsSurface, control: Array) -> Array:
+    """Bezier points of short pieces of a surface with some control points, (n, m, k, 4)."""
+    spline = surface.knots_u, surface.knots_v, control, *surface.degree, True
+    nets = bezier_nets(spline, _breaks(surface.knots_u), _breaks(surface.knots_v))
+    return nets.reshape(*nets.shape[:2], -1, 4)
 
 
 def _lines(grid: Grid, surfaces: dict[Cell, NurbsSurface], ranges: list[Pair], axis: int) -> Array:
     """Where columns or rows begin and end in the joined parameters: the mean speed is the same on both sides."""
-    lines, rate = [ranges[0][0], ranges[0][1]], 1.0
+    lines = [*ranges[0]]
+    rate = 1.0
     for k in range(1, grid.shape[axis]):
-        speeds = [float(np.mean([_end_speed(surfaces[cell], axis, end) for cell in surfaces if cell[axis] == k - end]))
-                  for end in (1, 0)]
-        rate *= speeds[1] / speeds[0] if speeds[0] > 0 and speeds[1] > 0 else 1.0
-        lines.append(lines[-1] + rate * (ranges[k][1] - ranges[k][0]))
+        before = [surface for cell, surface in surfaces.items() if cell[axis] == k - 1]
+        behind = [surface for cell, surface in surfaces.items() if cell[axis] == k]
+        speed_before = float(np.mean([_end_speed(surface, axis, 1) for surface in before]))
+        speed_behind = float(np.mean([_end_speed(surface, axis, 0) for surface in behind]))
+        if speed_before > 0 and speed_behind > 0:
+            rate *= speed_behind / speed_before
+        low, high = ranges[k]
+        lines.append(lines[-1] + rate * (high - low))
     return np.array(lines, dtype=float)
 
 
 def _end_speed(surface: NurbsSurface, axis: int, end: int) -> float:
     """Mean length of the derivative across a side, mm."""
     low, high = surface.domain[1 - axis]
-    uv = np.empty((17, 2))
-    uv[:, 1 - axis] = low + (high - low) * (np.arange(17) + 0.5) / 17
+    uv = np.empty((_SPEEDS, 2))
+    uv[:, 1 - axis] = low + (high - low) * (np.arange(_SPEEDS) + 0.5) / _SPEEDS
     uv[:, axis] = surface.domain[axis][end]
     d = surface.evaluate(uv)
-    return float(np.linalg.norm((d.su, d.sv)[axis], axis=1).mean())
+    derivative = (d.su, d.sv)[axis]
+    return float(np.linalg.norm(derivative, axis=1).mean())
 
 
 def _assemble_patches(grid: Grid, surfaces: dict[Cell, NurbsSurface],
                       lines: tuple[Array, ...]) -> tuple[NurbsSurface, float]:
     """All patches as one surface, and how far it lies beside them at most, mm."""
-    knots, firsts = [], []
     degree = surfaces[0, 0].degree
-    for axis in (0, 1):
-        column = [knots_along(surfaces[(k, 0) if axis == 0 else (0, k)], axis) for k in range(grid.shape[axis])]
-        p, line = degree[axis], lines[axis]
-        inner = [line[k] + (own[p + 1:-p - 1] - own[0]) * (line[k + 1] - line[k]) / (own[-1] - own[0])
-                 for k, own in enumerate(column)]
-        pieces = [np.full(p + 1, line[0])]
-        for k, own in enumerate(inner):
-            pieces += [own, np.full(p if k < len(inner) - 1 else p + 1, line[k + 1])]
-        knots.append(np.concatenate(pieces))
-        firsts.append(np.concatenate([[0], np.cumsum([len(own) - p - 2 for own in column])]))
-    total = np.zeros((firsts[0][-1] + 1, firsts[1][-1] + 1, 4))
-    share = np.zeros(total.shape[:2])
-    places = {(i, j): (slice(firsts[0][i], firsts[0][i + 1] + 1), slice(firsts[1][j], firsts[1][j + 1] + 1))
-              for i, j in surfaces}
-    for cell, place in places.items():
-        total[place] += surfaces[cell].control
-        share[place] += 1
-    total /= share[..., None]
-    moved = max(_surface_moved(surfaces[cell], total[place]) for cell, place in places.items())
-    return NurbsSurface(knots[0], knots[1], total, degree), moved
+    columns = [knots_along(surfaces[k, 0], 0) for k in range(grid.shape[0])]
+    rows = [knots_along(surfaces[0, k], 1) for k in range(grid.shape[1])]
+    knots_u = _join_knots(columns, degree[0], lines[0])
+    knots_v = _join_knots(rows, degree[1], lines[1])
+    places_u = _control_places(columns, degree[0])
+    places_v = _control_places(rows, degree[1])
+    # Control points on a join are those of both sides: their mean is taken.
+    total = np.zeros((places_u[-1].stop, places_v[-1].stop, 4))
+    count = np.zeros(total.shape[:2])
+    for (i, j), own in surfaces.items():
+        total[places_u[i], places_v[j]] += own.control
+        count[places_u[i], places_v[j]] += 1
+    total /= count[..., None]
+    moved = max(_surface_moved(own, total[places_u[i], places_v[j]]) for (i, j), own in surfaces.items())
+    return NurbsSurface(knots_u, knots_v, total, degree), moved
+
+
+def _join_knots(columns: list[Array], degree: int, line: Array) -> Array:
+    """The knots of columns, or rows, one after the other: each mapped to between two lines, C0 at the joins."""
+    pieces = [np.full(degree + 1, line[0])]
+    for k, own in enumerate(columns):
+        inner = own[degree + 1:-degree - 1]
+        mapped = line[k] + (inner - own[0]) * (line[k + 1] - line[k]) / (own[-1] - own[0])
+        is_last = k == len(columns) - 1
+        pieces += [mapped, np.full(degree + 1 if is_last else degree, line[k + 1])]
+    return np.concatenate(pieces)
+
+
+def _control_places(columns: list[Array], degree: int) -> list[slice]:
+    """Which control points of all are those of each column, or row: neighbours have those on their join in common."""
+    places = []
+    first = 0
+    for knots in columns:
+        end = first + len(knots) - degree - 1
+        places.append(slice(first, end))
+        first = end - 1
+    return places
 
 
 def _member(patch: JoinedPatch, box: tuple[Pair, Pair], place: tuple[Pair, Pair]) -> Member:
     """A face with the way from the joined parameters to its own."""
     matrix = np.zeros((2, 3))
     for axis in (0, 1):
-        (low, high), (first, last) = box[axis], place[axis]
-        start, end = patch.own(axis, low), patch.own(axis, high)
+        low, high = box[axis]
+        first, last = place[axis]
+        start = patch.own(axis, low)
+        end = patch.own(axis, high)
         slope = (end - start) / (last - first)
-        matrix[patch.axes[axis], axis], matrix[patch.axes[axis], 2] = slope, start - slope * first
+        own_axis = patch.axes[axis]
+        matrix[own_axis, axis] = slope
+        matrix[own_axis, 2] = start - slope * first
     return Member(patch.face, matrix, np.array(place, dtype=float).T)
 
 
 def _into(member: Member, uv: Array) -> Array:
     """Joined parameters from a member's own, (n, 2)."""
     assert member.matrix is not None
-    return np.asarray(np.linalg.solve(member.matrix[:, :2], (uv - member.matrix[:, 2]).T).T)
+    slopes, start = member.matrix[:, :2], member.matrix[:, 2]
+    return np.asarray(np.linalg.solve(slopes, (uv - start).T).T)
 
 
-def _kinks(members: dict[Cell, Member], lines: tuple[Array, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _kinks(members: Sequence[Member], lines: tuple[Array, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Kinks of the members in the joined parameters."""
     found: tuple[list[float], list[float]] = ([], [])
-    for member in members.values():
+    for member in members:
         assert member.matrix is not None
-        for own, values in enumerate(member.face.kinks):
-            axis = int(np.abs(member.matrix[own, :2]).argmax())
-            for t in values:
-                at = float((t - member.matrix[own, 2]) / member.matrix[own, axis])
-                if all(abs(at - other) > SAME * np.ptp(lines[axis]) for other in [*found[axis], *lines[axis]]):
-                    found[axis].append(at)
+        for own_axis, values in enumerate(member.face.kinks):
+            row = member.matrix[own_axis]
+            axis = int(np.abs(row[:2]).argmax())
+            same = SAME * np.ptp(lines[axis])
+            for own in values:
+                t = float((own - row[2]) / row[axis])
+                if all(abs(t - known) > same for known in [*found[axis], *lines[axis]]):
+                    found[axis].append(t)
     return tuple(sorted(found[0])), tuple(sorted(found[1]))
 
 
@@ -301,8 +362,12 @@ def corner_at(face: Face, axis: int, t: float) -> float:
     t : float
         The knot.
     """
-    ways = [(d.su, d.sv)[axis] for d in map(face.evaluate, beside(face, axis, t))]
-    return float(np.max(angle_between(*ways)))
+    before, on = (face.evaluate(uv) for uv in beside(face, axis, t))
+    if axis == 0:
+        turns = angle_between(before.su, on.su)
+    else:
+        turns = angle_between(before.sv, on.sv)
+    return float(np.max(turns))
 
 
 def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -315,30 +380,44 @@ def _outline(face: Face, lines: tuple[Array, ...]) -> tuple[Array, ...]:
     for member in face.members:
         own = []
         for loop in member.face.outline:
-            uv = _into(member, loop)
-            for axis, line in enumerate(lines):
-                near = np.abs(uv[:, axis, None] - line).argmin(axis=1)
-                close = np.abs(uv[:, axis] - line[near]) <= 1e3 * size[axis]
-                uv[close, axis] = line[near[close]]
-            own.append(_meet_neighbours(uv, corners, lines, size))
+            on_lines = _put_on_lines(_into(member, loop), lines, size)
+            own.append(_meet_neighbours(on_lines, corners, lines, size))
         corners = np.concatenate([corners, *own])
         loops = unite_polygons(loops, tuple(own)) if loops else tuple(own)
-    order = sorted(loops, key=lambda loop: -float(np.prod(np.ptp(loop, axis=0))))
-    return tuple(order)
+    return tuple(sorted(loops, key=_box_area, reverse=True))
+
+
+def _box_area(loop: Array) -> float:
+    return float(np.prod(np.ptp(loop, axis=0)))
+
+
+def _put_on_lines(uv: Array, lines: tuple[Array, ...], size: list[float]) -> Array:
+    """A loop of which what lies on a join, but for rounding, lies on it exactly."""
+    for axis, line in enumerate(lines):
+        parameter = uv[:, axis]
+        nearest = line[np.abs(parameter[:, None] - line).argmin(axis=1)]
+        is_close = np.abs(parameter - nearest) <= 1e3 * size[axis]
+        uv[is_close, axis] = nearest[is_close]
+    return uv
 
 
 def _whole(member: Member) -> bool:
     """Whether a member's place holds all of its surface."""
     assert member.box is not None and member.matrix is not None
     domain = np.array(member.face.surface.domain)
-    corners = np.sort(member.box @ member.matrix[:, :2].T + member.matrix[:, 2], axis=0).T
-    return bool((np.abs(corners - domain) <= SAME * np.ptp(domain, axis=1)[:, None]).all())
+    own_corners = member.box @ member.matrix[:, :2].T + member.matrix[:, 2]
+    own_domain = np.sort(own_corners, axis=0).T
+    same = SAME * np.ptp(domain, axis=1)
+    return bool((np.abs(own_domain - domain) <= same[:, None]).all())
 
 
 def _meet_neighbours(loop: Array, corners: Array, lines: tuple[Array, ...], size: list[float]) -> Array:
     """A loop whose corners on joins are the very ones of the neighbours where they are as good as these."""
+    if not len(corners):
+        return loop
     for i, point in enumerate(loop):
-        if any((point[axis] == lines[axis]).any() for axis in (0, 1)) and len(corners):
+        is_on_join = (point[0] == lines[0]).any() or (point[1] == lines[1]).any()
+        if is_on_join:
             gap = np.abs((corners - point) / size).max(axis=1)
             if gap.min() <= 1e3:
                 loop[i] = corners[gap.argmin()]

@@ -1,6 +1,7 @@
 """Patches of one surface on their way to be joined: the same parameters, degrees and knots in each column and row."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,10 +58,12 @@ class JoinedPatch:
             0 for the column's, 1 for the row's.
         ours : float
         """
-        ends = self.face.surface.domain[self.axes[axis]]
-        value = min(max(float((ours - self.shift[axis]) / self.scale[axis]), ends[0]), ends[1])
-        near = min(ends, key=lambda end: abs(end - value))
-        return near if abs(near - value) <= SAME * (ends[1] - ends[0]) else value
+        low, high = self.face.surface.domain[self.axes[axis]]
+        mapped = float((ours - self.shift[axis]) / self.scale[axis])
+        value = min(max(mapped, low), high)
+        nearest_end = min((low, high), key=lambda end: abs(end - value))
+        is_end = abs(nearest_end - value) <= SAME * (high - low)
+        return nearest_end if is_end else value
 
     def speed(self, axis: int) -> float:
         """Greatest length of the derivative by the parameter of the column or row, mm.
@@ -71,7 +74,9 @@ class JoinedPatch:
             0 for the column's, 1 for the row's.
         """
         d = self.face.evaluate(self.face.grid(7, 7))
-        return float(np.linalg.norm((d.su, d.sv)[self.axes[axis]], axis=1).max(initial=0) / abs(self.scale[axis]))
+        derivative = (d.su, d.sv)[self.axes[axis]]
+        own_speed = np.linalg.norm(derivative, axis=1).max(initial=0)
+        return float(own_speed / abs(self.scale[axis]))
 
 
 def align_parameters(grid: Grid) -> dict[Cell, JoinedPatch]:
@@ -81,20 +86,28 @@ def align_parameters(grid: Grid) -> dict[Cell, JoinedPatch]:
     ----------
     grid : Grid
     """
-    maps: dict[Cell, tuple[Array, Array]] = {cell: (np.ones(2), np.zeros(2)) for cell in grid.faces}
+    patches = {cell: JoinedPatch(face, np.ones(2), np.zeros(2), _own_axes(grid.turns[cell]))
+               for cell, face in grid.faces.items()}
     for axis in (0, 1):
-        for cell in sorted(grid.faces, key=lambda c: c[1 - axis]):
-            own = _own_axes(grid.turns[cell])[axis]
-            scale, shift = maps[cell]
-            before = (cell[0] - axis, cell[1] - (1 - axis))
-            meeting = grid.meetings.get((before, 1 - axis))
+        across = 1 - axis
+        # From one end of each column, or row, to the other: what is before a cell has its map already.
+        for cell in sorted(grid.faces, key=lambda c: c[across]):
+            patch = patches[cell]
+            before = _cell_before(cell, across)
+            meeting = grid.meetings.get((before, across))
             if meeting is None:
-                scale[axis] = grid.turns[cell][axis, own]
+                patch.scale[axis] = grid.turns[cell][axis, patch.axes[axis]]
             else:
-                other, gone = maps[before]
-                scale[axis] = other[axis] / meeting.slope
-                shift[axis] = gone[axis] - other[axis] * meeting.shift / meeting.slope
-    return {cell: JoinedPatch(face, *maps[cell], _own_axes(grid.turns[cell])) for cell, face in grid.faces.items()}
+                neighbour = patches[before]
+                patch.scale[axis] = neighbour.scale[axis] / meeting.slope
+                patch.shift[axis] = neighbour.shift[axis] - neighbour.scale[axis] * meeting.shift / meeting.slope
+    return patches
+
+
+def _cell_before(cell: Cell, axis: int) -> Cell:
+    """The cell before another one along an axis."""
+    column, row = cell
+    return (column - 1, row) if axis == 0 else (column, row - 1)
 
 
 def _own_axes(turn: Array) -> tuple[int, int]:
@@ -118,29 +131,50 @@ def range_of(grid: Grid, patches: dict[Cell, JoinedPatch], axis: int, k: int) ->
     UnsupportedGeometry
         When joins do not lie in one line, or a face goes on beyond the end of a neighbour's surface.
     """
-    line = [(cell, patch) for cell, patch in patches.items() if cell[axis] == k]
+    cells = [cell for cell in patches if cell[axis] == k]
+    line = [patches[cell] for cell in cells]
     ends = []
     for end in (0, 1):
-        places = []
-        for cell, patch in line:
-            before = (cell[0] - (axis == 0), cell[1] - (axis == 1)) if end == 0 else cell
-            meeting = grid.meetings.get((before, axis))
-            at = patch.face.surface.domain[patch.axes[axis]] if meeting is None else (meeting.sides[1 - end].at,) * 2
-            ours = sorted(patch.ours(axis, t) for t in at)
-            places.append(ours[end])
-        inner = 0 < k + end < grid.shape[axis]
-        ends.append(places[0] if inner else (max, min)[end](places))
-        _check_range([patch for _, patch in line], axis, (ends[-1], end, inner), places)
+        places = [_end_of_patch(grid, cell, patches[cell], axis, end) for cell in cells]
+        is_join = 0 < k + end < grid.shape[axis]
+        if is_join:
+            value = places[0]
+        else:  # as far as all surfaces go
+            value = max(places) if end == 0 else min(places)
+        ends.append(value)
+        _check_range(line, axis, _LineEnd(value, end, is_join), places)
     return ends[0], ends[1]
 
 
-def _check_range(line: list[JoinedPatch], axis: int, found: tuple[float, int, bool], places: list[float]) -> None:
+def _end_of_patch(grid: Grid, cell: Cell, patch: JoinedPatch, axis: int, end: int) -> float:
+    """The parameter at which a patch begins or ends: where it meets its neighbour, or where its surface does."""
+    before = _cell_before(cell, axis) if end == 0 else cell
+    meeting = grid.meetings.get((before, axis))
+    if meeting is not None:
+        return patch.ours(axis, meeting.sides[1 - end].at)
+    domain = patch.face.surface.domain[patch.axes[axis]]
+    return sorted(patch.ours(axis, t) for t in domain)[end]
+
+
+class _LineEnd(NamedTuple):
+    """Where a column or row begins (end 0) or ends (end 1), and whether another one follows there."""
+
+    value: float
+    end: int
+    is_join: bool
+
+
+def _check_range(line: list[JoinedPatch], axis: int, found: _LineEnd, places: list[float]) -> None:
     """That the joins of a column's patches lie in one line, and its faces between its outer ends."""
-    value, end, inner = found
     for patch, place in zip(line, places, strict=True):
-        bounds = patch.face.bounds[2 * patch.axes[axis]:2 * patch.axes[axis] + 2]
-        reach = sorted(patch.ours(axis, t) for t in bounds)[end]
-        off = (abs(place - value) if inner else (value - reach) * (1 - 2 * end)) * patch.speed(axis)
+        if found.is_join:
+            gap = abs(place - found.value)
+        else:
+            own = patch.axes[axis]
+            bounds = patch.face.bounds[2 * own:2 * own + 2]
+            reach = sorted(patch.ours(axis, t) for t in bounds)[found.end]
+            gap = found.value - reach if found.end == 0 else reach - found.value
+        off = gap * patch.speed(axis)
         if off > GAP:
             names = " and ".join(dict.fromkeys([line[0].face.label, patch.face.label, line[-1].face.label]))
             raise UnsupportedGeometry(f"faces {names} cannot be joined: they end {off:.3g} mm apart along their common "
@@ -157,18 +191,24 @@ def surface_over(patch: JoinedPatch, box: tuple[Pair, Pair]) -> NurbsSurface:
         Ranges of the column's and the row's parameter.
     """
     source = patch.face.surface
-    knots, control = [source.knots_u, source.knots_v], source.control
+    knots = [source.knots_u, source.knots_v]
+    control = source.control
     for axis in (0, 1):
+        low, high = box[axis]
         own = patch.axes[axis]
-        start, end = (patch.own(axis, t) for t in box[axis])
+        start = patch.own(axis, low)
+        end = patch.own(axis, high)
         degree = source.degree[own]
-        knots[own], moved = restrict_spline(knots[own], np.moveaxis(control, own, 0), degree, min(start, end),
+        own_knots, points = restrict_spline(knots[own], np.moveaxis(control, own, 0), degree, min(start, end),
                                             max(start, end))
-        mapped = box[axis][0] + (knots[own] - start) * ((box[axis][1] - box[axis][0]) / (end - start))
+        mapped = low + (own_knots - start) * ((high - low) / (end - start))
         if start > end:
-            mapped, moved = mapped[::-1], moved[::-1]
-        mapped[:degree + 1], mapped[-degree - 1:] = box[axis]
-        knots[own], control = mapped, np.moveaxis(moved, 0, own)
+            mapped, points = mapped[::-1], points[::-1]
+        # The ends exactly, without rounding.
+        mapped[:degree + 1] = low
+        mapped[-degree - 1:] = high
+        knots[own] = mapped
+        control = np.moveaxis(points, 0, own)
     made = NurbsSurface(knots[0], knots[1], control, source.degree)
     return made if patch.axes == (0, 1) else made.swapped()
 
@@ -187,15 +227,18 @@ def alike(grid: Grid, surfaces: dict[Cell, NurbsSurface]) -> dict[Cell, NurbsSur
         degree = max(surface.degree[axis] for surface in surfaces.values())
         for k in range(grid.shape[axis]):
             cells = [cell for cell in surfaces if cell[axis] == k]
-            splines = {cell: elevate_degree(knots_along(surfaces[cell], axis),
-                                            np.moveaxis(surfaces[cell].control, axis, 0),
-                                            surfaces[cell].degree[axis], degree) for cell in cells}
-            target = _common([knots for knots, _ in splines.values()], degree)
-            for cell in cells:
-                knots, control = splines[cell]
-                more = insert_knots(_snap_knots(knots, target), control, degree, target)
-                surfaces[cell] = _with(surfaces[cell], axis, (target, np.moveaxis(more, 0, axis)), degree)
+            splines = [_elevate_along(surfaces[cell], axis, degree) for cell in cells]
+            target = _common_knots([knots for knots, _ in splines], degree)
+            for cell, (knots, points) in zip(cells, splines, strict=True):
+                more = insert_knots(_snap_knots(knots, target), points, degree, target)
+                surfaces[cell] = _replace_along(surfaces[cell], axis, target, np.moveaxis(more, 0, axis), degree)
     return surfaces
+
+
+def _elevate_along(surface: NurbsSurface, axis: int, degree: int) -> tuple[Array, Array]:
+    """Knots, and control points with those along the axis first, of a surface with a higher degree along an axis."""
+    points = np.moveaxis(surface.control, axis, 0)
+    return elevate_degree(knots_along(surface, axis), points, surface.degree[axis], degree)
 
 
 def knots_along(surface: NurbsSurface, axis: int) -> Array:
@@ -209,20 +252,22 @@ def knots_along(surface: NurbsSurface, axis: int) -> Array:
     return surface.knots_v if axis else surface.knots_u
 
 
-def _with(surface: NurbsSurface, axis: int, spline: tuple[Array, Array], degree: int) -> NurbsSurface:
+def _replace_along(surface: NurbsSurface, axis: int, knots: Array, control: Array, degree: int) -> NurbsSurface:
+    """A surface with other knots along an axis, and what goes with them."""
     if axis == 0:
-        return NurbsSurface(spline[0], surface.knots_v, spline[1], (degree, surface.degree[1]))
-    return NurbsSurface(surface.knots_u, spline[0], spline[1], (surface.degree[0], degree))
+        return NurbsSurface(knots, surface.knots_v, control, (degree, surface.degree[1]))
+    return NurbsSurface(surface.knots_u, knots, control, (surface.degree[0], degree))
 
 
-def _common(sequences: list[Array], degree: int) -> Array:
+def _common_knots(sequences: list[Array], degree: int) -> Array:
     """Knots that hold those of several splines over the same range, each as often as in any of them."""
     low, high = sequences[0][0], sequences[0][-1]
+    same = SAME * (high - low)
     values: list[float] = []
     counts: list[int] = []
     for knots in sequences:
         for t, count in zip(*distinct_inner(knots, degree), strict=True):
-            near = next((i for i, value in enumerate(values) if abs(value - t) <= SAME * (high - low)), None)
+            near = next((i for i, value in enumerate(values) if abs(value - t) <= same), None)
             if near is None:
                 values.append(float(t))
                 counts.append(int(count))
@@ -234,4 +279,6 @@ def _common(sequences: list[Array], degree: int) -> Array:
 
 
 def _snap_knots(knots: Array, target: Array) -> Array:
-    return np.asarray(target[np.abs(knots[:, None] - target[None]).argmin(axis=1)])
+    """Knots as those of the target that are nearest to them."""
+    nearest = np.abs(knots[:, None] - target[None]).argmin(axis=1)
+    return np.asarray(target[nearest])
