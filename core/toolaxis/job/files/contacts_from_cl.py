@@ -1,6 +1,7 @@
 """Contacts of plans that were read from their folders: their CL files hold only tips and axes."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,27 +31,39 @@ def with_contacts(plan: Plan, numbers: frozenset[int] | None = None) -> Plan:
     numbers : frozenset of int, optional
         Operations that matter; all unless given.
     """
-    return replace(plan, operations=tuple(_known(plan, op) if numbers is None or op.number in numbers else op
-                                          for op in plan.operations))
+    operations = []
+    for op in plan.operations:
+        matters = numbers is None or op.number in numbers
+        operations.append(_add_contacts(plan, op) if matters else op)
+    return replace(plan, operations=tuple(operations))
 
 
-def _known(plan: Plan, op: Operation) -> Operation:
+def _add_contacts(plan: Plan, op: Operation) -> Operation:
     path = op.path
     if path is None or not np.array_equal(path.cc, path.cl):
         return op
-    rows, uv = _touching(plan, op, path)
-    cc, normal = path.cc.copy(), path.normal.copy()
-    cc[rows], normal[rows] = op.face.evaluate(uv).point, op.face.normal(uv)
+    touching = _find_contacts(plan, op, path)
+    cc = path.cc.copy()
+    normal = path.normal.copy()
+    cc[touching.rows] = op.face.evaluate(touching.uv).point
+    normal[touching.rows] = op.face.normal(touching.uv)
     return replace(op, path=replace(path, cc=cc, normal=normal))
 
 
-def _touching(plan: Plan, op: Operation, path: ToolPath) -> tuple[NDArray[np.int64], Array]:
-    """Rows of a path at which the tool touches the face or its continuation, and the parameters there."""
-    cutting = path.kind == Motion.CUT
-    rows = np.flatnonzero(cutting | np.append(cutting[1:], False))
+class _ContactRows(NamedTuple):
+    """Rows of a path at which the tool touches the face or its continuation, (n,), and parameters there, (n, 2)."""
+
+    rows: NDArray[np.int64]
+    uv: Array
+
+
+def _find_contacts(plan: Plan, op: Operation, path: ToolPath) -> _ContactRows:
+    is_cut = path.kind == Motion.CUT
+    begins_cut = np.append(is_cut[1:], False)
+    rows = np.flatnonzero(is_cut | begins_cut)
     found = contacts_of(op.face, op.tool, path.cl[rows], path.axis[rows], plan.inputs.allowance_of(op.face))
-    near = found.off <= _NEAR + plan.inputs.tolerance.chord_for(plan.inputs.scallop)
-    return rows[near], found.uv[near]
+    is_near = found.off <= _NEAR + plan.inputs.tolerance.chord_for(plan.inputs.scallop)
+    return _ContactRows(rows[is_near], found.uv[is_near])
 
 
 def widths_along(plan: Plan, op: Operation) -> list[tuple[Array, Array]]:
@@ -69,25 +82,30 @@ def widths_along(plan: Plan, op: Operation) -> list[tuple[Array, Array]]:
     """
     axis, path = op.orientation.axis, op.path
     assert axis is not None and path is not None
-    rows, uv = _touching(plan, op, path)
+    rows, uv = _find_contacts(plan, op, path)
     points = op.face.evaluate(uv).point
-    follows = (np.diff(rows) == 1) & (path.kind[rows[1:]] == Motion.CUT)
+    # A contact goes on the one before where the tool cuts from there to it.
+    goes_on = (np.diff(rows) == 1) & (path.kind[rows[1:]] == Motion.CUT)
+    firsts = np.flatnonzero(~np.append(False, goes_on))
+    ends = np.flatnonzero(~np.append(goes_on, False)) + 1
     lines = []
-    for first, last in zip(np.flatnonzero(~np.append(False, follows)), np.flatnonzero(~np.append(follows, False)),
-                           strict=True):
-        dense = _dense(uv[first:last + 1], points[first:last + 1], _APART * op.face.diagonal)
-        dense = dense[op.face.contains(dense)]
-        if len(dense) > 1:
-            along = op.face.evaluate(dense).point
+    for first, end in zip(firsts, ends, strict=True):
+        dense = _fill_gaps(uv[first:end], points[first:end], _APART * op.face.diagonal)
+        on_face = dense[op.face.contains(dense)]
+        if len(on_face) > 1:
+            along = op.face.evaluate(on_face).point
             feed = op.orientation.feed if op.orientation.pattern == ISO else np.gradient(along, axis=0)
-            width = strip_width(op.face, op.tool, dense, axis, plan.inputs.scallop, feed).sum(axis=1)
-            lines.append((along, width))
+            sides = strip_width(op.face, op.tool, on_face, axis, plan.inputs.scallop, feed)
+            lines.append((along, sides.sum(axis=1)))
     return lines
 
 
-def _dense(uv: Array, points: Array, most: float) -> Array:
+def _fill_gaps(uv: Array, points: Array, most: float) -> Array:
     """Parameters with others between them where points are farther apart than a bound."""
-    counts = np.maximum(np.ceil(np.linalg.norm(np.diff(points, axis=0), axis=1) / most), 1).astype(np.int64)
-    pieces = [a + np.arange(count)[:, None] / count * (b - a) for a, b, count in
-              zip(uv[:-1], uv[1:], counts, strict=True)]
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    counts = np.maximum(np.ceil(gaps / most), 1).astype(np.int64)
+    pieces = []
+    for start, end, count in zip(uv[:-1], uv[1:], counts, strict=True):
+        shares = np.arange(count)[:, None] / count
+        pieces.append(start + shares * (end - start))
     return np.concatenate([*pieces, uv[-1:]])

@@ -26,16 +26,20 @@ def free_angles(axes: Array, clamp: Clamp) -> Array:
     clamp : Clamp
     """
     machine, which = clamp.machine, clamp.which
-    rows = axes @ placement(clamp.table_from_part)[:3, :3].T
-    zero = tool_axes(machine, clamp.rotary(np.zeros(1)))[0]
-    direction = np.asarray(machine.rotary[1 - which].direction)
+    table_from_part = placement(clamp.table_from_part)[:3, :3]
+    on_table = axes @ table_from_part.T
+    axis_at_zero = tool_axes(machine, clamp.rotary(np.zeros(1)))[0]
+    free = machine.rotary[1 - which]
+    direction = np.asarray(free.direction)
     if which == 0:
         direction = rotation(machine.rotary[0].direction, clamp.angle) @ direction
-    angles = np.unwrap(one_turn(direction, zero, rows)[0])
-    free = machine.rotary[1 - which]
+    turns = one_turn(direction, axis_at_zero, on_table)[0]
+    angles = np.unwrap(turns)
+    # The range that is run through is brought by whole turns as near as may be to the middle of the axis' own.
     middle = (angles.min() + angles.max()) / 2
-    inside = (max(free.low, -np.pi) + min(free.high, np.pi)) / 2
-    return np.asarray(angles + 2 * np.pi * np.round((inside - middle) / (2 * np.pi)))
+    middle_of_range = (max(free.low, -np.pi) + min(free.high, np.pi)) / 2
+    whole_turns = np.round((middle_of_range - middle) / (2 * np.pi))
+    return np.asarray(angles + 2 * np.pi * whole_turns)
 
 
 def on_the_circle(path: ToolPath, clamp: Clamp) -> ToolPath:
@@ -53,18 +57,26 @@ def on_the_circle(path: ToolPath, clamp: Clamp) -> ToolPath:
     free axis turns by one degree at most where nothing is cut.
     """
     free = free_angles(path.axis, clamp)
+    is_cut = path.kind == Motion.CUT
     turn = np.append(0.0, np.abs(np.diff(free)))
-    parts = np.where(path.kind == Motion.CUT, 1, np.maximum(np.ceil(turn / _TURN), 1)).astype(np.int64)
+    parts = np.where(is_cut, 1, np.maximum(np.ceil(turn / _TURN), 1)).astype(np.int64)
+    # Every point owns the points on the motion to it, of which the last one is the point itself.
     owner, number = number_parts(parts)
     share = (number + 1) / parts[owner]
-    before = np.maximum(owner - 1, 0)
-    angles = free[before] + share * (free[owner] - free[before])
-    whole = share == 1
-    axes = clamp.axes(np.where(whole, free[owner], angles))
-    between = [rows[before] + share[:, None] * (rows[owner] - rows[before]) for rows in (path.cc, path.cl)]
-    cc, cl = (np.where(whole[:, None], rows[owner], new) for rows, new in zip((path.cc, path.cl), between, strict=True))
-    cut = path.kind[owner] == Motion.CUT
-    touching = cut | (np.append(path.kind[1:], 0) == Motion.CUT)[owner] & whole
-    normal = np.where(touching[:, None], path.normal[owner], axes)
+    is_itself = share == 1
+
+    def _spread(rows: Array) -> Array:
+        """Rows of the path's points, and those between them."""
+        before = rows[np.maximum(owner - 1, 0)]
+        shares = share.reshape(-1, *[1] * (rows.ndim - 1))
+        between = before + shares * (rows[owner] - before)
+        return np.where(is_itself.reshape(shares.shape), rows[owner], between)
+
+    axes = clamp.axes(_spread(free))
+    # Points at which a cut begins touch the face too, and so may the last one.
+    may_begin_cut = np.append(is_cut[1:], True)
+    is_touching = is_cut[owner] | (may_begin_cut[owner] & is_itself)
+    normal = np.where(is_touching[:, None], path.normal[owner], axes)
     ends = np.concatenate([[0], np.cumsum(parts)])
-    return ToolPath(cc, cl, np.asarray(unit(axes)), normal, path.kind[owner], ends[path.breaks])
+    return ToolPath(_spread(path.cc), _spread(path.cl), np.asarray(unit(axes)), normal, path.kind[owner],
+                    ends[path.breaks])

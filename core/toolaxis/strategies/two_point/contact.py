@@ -5,7 +5,7 @@ Between its two contacts it stays within the tolerance of the surface, so that i
 tolerances in depth make it, and not one.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -16,6 +16,8 @@ from toolaxis.errors import InvalidInput
 from toolaxis.strategies.two_point.rings import CONTACT, ContactSet, CornerCircles, Posture, check_tolerance, rings
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Index = NDArray[np.int64]
 
 #: Share of the tolerance at which the ring bridges the contact: the rest is for what lies between samples.
 BRIDGE = 0.98
@@ -151,31 +153,51 @@ def balance(setting: ContactSet, lift: ArrayLike, start: ArrayLike = 0.0) -> Arr
     start : float or (n,) array_like
         Direction to begin with, rad.
     """
-    first, height = (np.zeros(len(setting.uv)) + np.asarray(rows, dtype=float) for rows in (start, lift))
+    first = _one_each(setting, start)
+    height = _one_each(setting, lift)
     stand = Posture(_first_lean(setting, height), first, height)
     ring = rings(setting, stand)
     for _ in range(6):
-        sides = ring.sides
-        leant = rings(setting, replace(stand, lean=stand.lean + _LEAN_STEP), ring.uv).sides
-        turned = rings(setting, replace(stand, direction=stand.direction + _TURN_STEP), ring.uv).sides
-        by_lean, by_turn = (leant - sides) / _LEAN_STEP, (turned - sides) / _TURN_STEP
-        size = by_lean[:, 0] * by_turn[:, 1] - by_lean[:, 1] * by_turn[:, 0]
-        size = np.where(np.abs(size) > 1e-6, size, np.inf)
-        lean = (sides[:, 1] * by_turn[:, 0] - sides[:, 0] * by_turn[:, 1]) / size
-        turn = (sides[:, 0] * by_lean[:, 1] - sides[:, 1] * by_lean[:, 0]) / size
-        stand = Posture(np.clip(stand.lean + np.clip(lean, -0.05, 0.05), setting.least_lean, STEEPEST),
-                        np.clip(stand.direction + np.clip(turn, -0.1, 0.1), first - ASIDE, first + ASIDE),
-                        stand.lift)
+        lean_step, turn_step = _newton_step(setting, stand, ring)
+        lean = stand.lean + np.clip(lean_step, -0.05, 0.05)
+        direction = stand.direction + np.clip(turn_step, -0.1, 0.1)
+        stand = Posture(np.clip(lean, setting.least_lean, STEEPEST),
+                        np.clip(direction, first - ASIDE, first + ASIDE), stand.lift)
         ring = rings(setting, stand, ring.uv)
-    found = (np.abs(ring.sides).max(axis=1) <= TOUCH) & (np.abs(stand.direction - first) < ASIDE)
-    return np.where(found, stand.direction, np.nan)
+    both_touch = np.abs(ring.sides).max(axis=1) <= TOUCH
+    is_balanced = both_touch & (np.abs(stand.direction - first) < ASIDE)
+    return np.where(is_balanced, stand.direction, np.nan)
+
+
+def _one_each(setting: ContactSet, values: ArrayLike) -> Array:
+    """A value, or one for each contact, as one for each, (n,)."""
+    return np.asarray(np.zeros(len(setting.uv)) + np.asarray(values, dtype=float))
+
+
+def _newton_step(setting: ContactSet, stand: Posture, ring: CornerCircles) -> tuple[Array, Array]:
+    """Changes of lean and of direction, (n,) rad each, by which the heights of both sides become zero, by differences.
+
+    Both are zero where the two sides do not tell lean and direction apart.
+    """
+    leant = rings(setting, replace(stand, lean=stand.lean + _LEAN_STEP), ring.uv)
+    turned = rings(setting, replace(stand, direction=stand.direction + _TURN_STEP), ring.uv)
+    sides = ring.sides
+    right_by_lean, left_by_lean = ((leant.sides - sides) / _LEAN_STEP).T
+    right_by_turn, left_by_turn = ((turned.sides - sides) / _TURN_STEP).T
+    right, left = sides.T
+    determinant = right_by_lean * left_by_turn - left_by_lean * right_by_turn
+    determinant = np.where(np.abs(determinant) > 1e-6, determinant, np.inf)
+    lean = (left * right_by_turn - right * left_by_turn) / determinant
+    turn = (right * left_by_lean - left * right_by_lean) / determinant
+    return lean, turn
 
 
 def _first_lean(setting: ContactSet, lift: Array) -> Array:
     """The formula's lean for small lifts, within limits, (n,) rad."""
     across = np.maximum(setting.curvatures()[1], 0.0)
     sine = np.clip(setting.tool.flat_radius * across, 0.0, np.sin(STEEPEST))
-    return np.asarray(np.clip(np.arcsin(sine) - np.sqrt(2 * lift * across), setting.least_lean, STEEPEST))
+    lean = np.arcsin(sine) - np.sqrt(2 * lift * across)
+    return np.asarray(np.clip(lean, setting.least_lean, STEEPEST))
 
 
 def settle(setting: ContactSet, lift: ArrayLike, direction: ArrayLike = 0.0) -> tuple[Posture, CornerCircles]:
@@ -197,19 +219,21 @@ def settle(setting: ContactSet, lift: ArrayLike, direction: ArrayLike = 0.0) -> 
     Posture, Rings
         Heights at `ANGLES` and between them above zero within `FREE`.
     """
-    aside, height = (np.zeros(len(setting.uv)) + np.asarray(rows, dtype=float) for rows in (direction, lift))
-    stand = Posture(_first_lean(setting, height), aside, height)
-    ring, least = rings(setting, stand), np.full(len(height), setting.least_lean)
+    height = _one_each(setting, lift)
+    stand = Posture(_first_lean(setting, height), _one_each(setting, direction), height)
+    ring = rings(setting, stand)
+    least = np.full(len(height), setting.least_lean)
     for _ in range(5):
-        stand, ring = _lean(setting, stand, ring, least)
+        stand, ring = _lean_until_free(setting, stand, ring, least)
+        depth = ring.least
         spare = np.maximum(ring.sides.min(axis=1), 0.0)
-        height = np.where(ring.least < -FREE, stand.lift - ring.least, np.maximum(stand.lift - spare, 0.0))
+        height = np.where(depth < -FREE, stand.lift - depth, np.maximum(stand.lift - spare, 0.0))
         if np.abs(height - stand.lift).max(initial=0.0) <= FREE:
             break
         stand = replace(stand, lift=height)
         ring = rings(setting, stand, ring.uv)
     else:
-        stand, ring = _lean(setting, stand, ring, least)
+        stand, ring = _lean_until_free(setting, stand, ring, least)
     return _raise_rings(setting, stand, ring)
 
 
@@ -222,16 +246,18 @@ def gouge_free_lean(setting: ContactSet, stand: Posture) -> tuple[Posture, Corne
     stand : Posture
         Where nothing gouges at the steepest lean either, the ring rises.
     """
-    return _raise_rings(setting, *_lean(setting, stand, rings(setting, stand), stand.lean))
+    leant, ring = _lean_until_free(setting, stand, rings(setting, stand), stand.lean)
+    return _raise_rings(setting, leant, ring)
 
 
 def _raise_rings(setting: ContactSet, stand: Posture, ring: CornerCircles) -> tuple[Posture, CornerCircles]:
     """Rings that gouge, higher by what they gouge until they do not."""
     for _ in range(40):
-        low = ring.least
-        if (low >= -FREE).all():
+        depth = ring.least
+        if (depth >= -FREE).all():
             break
-        stand = replace(stand, lift=np.where(low < -FREE, stand.lift - 1.2 * low, stand.lift))
+        lift = np.where(depth < -FREE, stand.lift - 1.2 * depth, stand.lift)
+        stand = replace(stand, lift=lift)
         ring = rings(setting, stand, ring.uv)
     return stand, ring
 
@@ -247,41 +273,89 @@ def lower_to_contact(setting: ContactSet, stand: Posture) -> tuple[Posture, Corn
     """
     ring = rings(setting, stand)
     for _ in range(3):
-        stand = replace(stand, lift=np.maximum(stand.lift - np.maximum(ring.least, 0.0), np.minimum(stand.lift, 0.0)))
+        spare = np.maximum(ring.least, 0.0)
+        lift = np.maximum(stand.lift - spare, np.minimum(stand.lift, 0.0))
+        stand = replace(stand, lift=lift)
         ring = rings(setting, stand, ring.uv)
     return stand, ring
 
 
-def _lean(setting: ContactSet, stand: Posture, ring: CornerCircles, least: Array) -> tuple[Posture, CornerCircles]:
+@dataclass(eq=False)
+class _LeanBracket:
+    """Between which leans the least one lies at which a ring is free, rad, and its depth at both, mm, (n,) each.
+
+    Depths are infinite where no ring has been looked at yet.
+    """
+
+    low: Array
+    high: Array
+    depth_low: Array
+    depth_high: Array
+
+    @staticmethod
+    def above(least: Array) -> "_LeanBracket":
+        """From the least leans to the steepest."""
+        unknown = np.full(len(least), np.inf)
+        return _LeanBracket(least.copy(), np.full(len(least), STEEPEST), -unknown, unknown)
+
+    def narrow(self, rows: Index, lean: Array, depth: Array) -> None:
+        """Take in how deep some of the rings are at other leans."""
+        is_free = depth >= -FREE
+        self.high[rows] = np.where(is_free, lean, self.high[rows])
+        self.depth_high[rows] = np.where(is_free, depth, self.depth_high[rows])
+        self.low[rows] = np.where(is_free, self.low[rows], lean)
+        self.depth_low[rows] = np.where(is_free, self.depth_low[rows], depth)
+
+    def within(self, rows: Index, halve: Bools) -> Array:
+        """A lean inside each bracket: its middle, or where the secant has no depth; of no use outside `is_known`."""
+        low, high = self.low[rows], self.high[rows]
+        depth_low, depth_high = self.depth_low[rows], self.depth_high[rows]
+        with np.errstate(invalid="ignore"):
+            secant = low - depth_low * (high - low) / (depth_high - depth_low)
+        return np.where(halve, (low + high) / 2, secant)
+
+    def is_known(self, rows: Index) -> Bools:
+        """Whether rings have been looked at on both sides."""
+        return np.asarray(np.isfinite(self.depth_low[rows]) & np.isfinite(self.depth_high[rows]))
+
+
+def _lean_until_free(setting: ContactSet, stand: Posture, ring: CornerCircles,
+                     least: Array) -> tuple[Posture, CornerCircles]:
     """The least lean within limits at which nothing gouges, or the steepest; by a bracket, secants and halves."""
     count = len(stand.lean)
-    low, high = least.copy(), np.full(count, STEEPEST)
-    below, above = np.full(count, -np.inf), np.full(count, np.inf)
-    lean, rows = stand.lean.copy(), np.arange(count)
-    best, found, trial = np.full(count, np.nan), ring, ring
+    bracket = _LeanBracket.above(least)
+    leans = stand.lean.copy()
+    rows = np.arange(count)  # of the rings that are still looked for
+    best = np.full(count, np.nan)
+    found = trial = ring
     for step in range(40):
-        depth = trial.least
-        free = depth >= -FREE
-        high[rows], above[rows] = np.where(free, lean[rows], high[rows]), np.where(free, depth, above[rows])
-        low[rows], below[rows] = np.where(free, low[rows], lean[rows]), np.where(free, below[rows], depth)
-        keep = free | (lean[rows] >= STEEPEST)
-        best[rows[keep]] = lean[rows[keep]]
-        found = found.put(rows[keep], CornerCircles(trial.axis[keep], trial.tip[keep], trial.uv[keep],
-                                                    trial.height[keep]))
+        lean, depth = leans[rows], trial.least
+        bracket.narrow(rows, lean, depth)
+        is_free = depth >= -FREE
+        is_steepest = lean >= STEEPEST
+        is_kept = is_free | is_steepest
+        best[rows[is_kept]] = lean[is_kept]
+        found = found.put(rows[is_kept], trial.rows(is_kept))
         # Where the contact itself touches, the depth does not tell how far the lean is from the least one.
-        flat = trial.height[:, CONTACT] <= 3 * FREE
-        done = (free & (((depth <= FREE) & ~flat) | (lean[rows] <= least[rows]))) | (lean[rows] >= STEEPEST)
-        done |= high[rows] - low[rows] <= np.where(flat, NARROW, 1e-9)
-        rows, near, depth, flat = rows[~done], trial.uv[~done], depth[~done], flat[~done]
+        is_flat = trial.height[:, CONTACT] <= 3 * FREE
+        touches = (depth <= FREE) & ~is_flat
+        is_done = (is_free & (touches | (lean <= least[rows]))) | is_steepest
+        is_done |= bracket.high[rows] - bracket.low[rows] <= np.where(is_flat, NARROW, 1e-9)
+        left = ~is_done
+        rows, lean, depth, is_flat = rows[left], lean[left], depth[left], is_flat[left]
         if not len(rows):
             break
-        known = np.isfinite(below[rows]) & np.isfinite(above[rows])
-        with np.errstate(invalid="ignore"):
-            secant = low[rows] - below[rows] * (high[rows] - low[rows]) / (above[rows] - below[rows])
-        stride = lean[rows] + np.clip(-(depth - FREE / 2) / (0.1 * setting.tool.flat_radius), -0.05, 0.1)
-        stride = np.where(depth < -FREE, np.maximum(stride, lean[rows] + 0.002), stride - 0.03 * flat)
-        inside = np.where(flat | (step % 3 == 2), (low[rows] + high[rows]) / 2, secant)
-        lean[rows] = np.clip(np.where(known, inside, stride), least[rows], STEEPEST)
-        trial = rings(setting.rows(rows), replace(stand, lean=lean).rows(rows), near)
-    late = np.isnan(best)
-    return replace(stand, lean=np.where(late, high, best)), found
+        inside = bracket.within(rows, is_flat | (step % 3 == 2))
+        onwards = _stride(setting, lean, depth, is_flat)
+        next_lean = np.where(bracket.is_known(rows), inside, onwards)
+        leans[rows] = np.clip(next_lean, least[rows], STEEPEST)
+        trial = rings(setting.rows(rows), replace(stand, lean=leans).rows(rows), trial.uv[left])
+    was_not_found = np.isnan(best)
+    return replace(stand, lean=np.where(was_not_found, bracket.high, best)), found
+
+
+def _stride(setting: ContactSet, lean: Array, depth: Array, is_flat: Bools) -> Array:
+    """The next lean where one side of the bracket is not known yet: about as far as the ring's edge has to rise."""
+    change = -(depth - FREE / 2) / (0.1 * setting.tool.flat_radius)
+    onwards = lean + np.clip(change, -0.05, 0.1)
+    return np.where(depth < -FREE, np.maximum(onwards, lean + 0.002), onwards - 0.03 * is_flat)

@@ -184,6 +184,15 @@ class CornerCircles:
     uv: Array
     height: Array
 
+    def rows(self, which: NDArray[Any]) -> "CornerCircles":
+        """Some of them.
+
+        Parameters
+        ----------
+        which : (n,) array of bool or int
+        """
+        return CornerCircles(self.axis[which], self.tip[which], self.uv[which], self.height[which])
+
     def put(self, which: NDArray[Any], new: "CornerCircles") -> "CornerCircles":
         """With some of them replaced.
 
