@@ -54,9 +54,11 @@ def passes(plan: Plan, links: bool = False) -> dict[str, bd.Compound]:
         Entries, exits and links too, at the tool's tip.
     """
     kinds = tuple(Motion) if links else (Motion.CUT,)
-    return {piece.name: bd.Compound(piece.passes(*kinds),
-                                    label=piece.name, color=bd.Color(*LINES))
-            for piece in pieces(plan) if piece.done}
+    found = {}
+    for piece in pieces(plan):
+        if piece.done:
+            found[piece.name] = bd.Compound(piece.passes(*kinds), label=piece.name, color=bd.Color(*LINES))
+    return found
 
 
 def sub_surfaces(plan: Plan) -> dict[str, bd.Face]:
@@ -69,8 +71,11 @@ def sub_surfaces(plan: Plan) -> dict[str, bd.Face]:
     from toolaxis.report.figures.map_colouring import colours_of
 
     colours = colours_of(plan)
-    return {piece.name: bd.Face(piece.face, label=piece.surface_name, color=bd.Color(*colours[piece.operation.number]))
-            for piece in pieces(plan)}
+    found = {}
+    for piece in pieces(plan):
+        colour = bd.Color(*colours[piece.operation.number])
+        found[piece.name] = bd.Face(piece.face, label=piece.surface_name, color=colour)
+    return found
 
 
 def compound(plan: Plan, part: "bd.Shape | None" = None) -> bd.Compound:

@@ -230,34 +230,46 @@ def group_motions(motions: Motions, reach: float) -> Hierarchy:
     reach : float
         Greatest distance of a point of the tool from its tip, mm.
     """
-    first = _beginnings(len(motions))
+    begins = _beginnings(len(motions))
+    first = begins[:-1]
+    group = _numbers_of_groups(begins)
     ends = np.stack([motions.start, motions.start + motions.step], axis=1)
     axes = np.stack([motions.axis, motions.axis + motions.turn], axis=1)
     axes = axes / np.linalg.norm(axes, axis=2, keepdims=True)
-    low, high = (f.reduceat(ends, first[:-1], axis=0) for f in (np.minimum, np.maximum))
-    centre = 0.5 * (low.min(axis=1) + high.max(axis=1))
-    mean = _mean(np.add.reduceat(axes.sum(axis=1), first[:-1], axis=0), axes[first[:-1], 0])
-    owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    far = np.linalg.norm(ends - centre[owner][:, None], axis=2).max(axis=1)
-    lean = np.linalg.norm(axes - mean[owner][:, None], axis=2).max(axis=1)
-    radius, angle = (np.maximum.reduceat(x, first[:-1]) for x in (far, lean))
-    narrow = np.ascontiguousarray(np.column_stack([centre, radius, mean, angle * reach]))
-    return Hierarchy(*_around(narrow, reach), narrow, first)
-
-
-def _around(narrow: Array, reach: float) -> tuple[Array, Index]:
-    """Balls around neighbouring balls, as rows of the same kind, and where the balls of each begin."""
-    begin = _beginnings(len(narrow))
-    radius = narrow[:, 3:4]
-    low = np.minimum.reduceat(narrow[:, :3] - radius, begin[:-1], axis=0)
-    high = np.maximum.reduceat(narrow[:, :3] + radius, begin[:-1], axis=0)
+    low = np.minimum.reduceat(ends, first, axis=0).min(axis=1)
+    high = np.maximum.reduceat(ends, first, axis=0).max(axis=1)
     centre = 0.5 * (low + high)
-    mean = _mean(np.add.reduceat(narrow[:, 4:7], begin[:-1], axis=0), narrow[begin[:-1], 4:7])
-    owner = np.repeat(np.arange(len(begin) - 1), np.diff(begin))
-    far = np.linalg.norm(narrow[:, :3] - centre[owner], axis=1) + narrow[:, 3]
-    lean = np.linalg.norm(narrow[:, 4:7] - mean[owner], axis=1) * reach + narrow[:, 7]
-    radius, moved = (np.maximum.reduceat(x, begin[:-1]) for x in (far, lean))
-    return np.ascontiguousarray(np.column_stack([centre, radius, mean, moved])), begin
+    sums = np.add.reduceat(axes.sum(axis=1), first, axis=0)
+    mean = _mean(sums, axes[first, 0])
+    distances = np.linalg.norm(ends - centre[group][:, None], axis=2).max(axis=1)
+    leans = np.linalg.norm(axes - mean[group][:, None], axis=2).max(axis=1)
+    radius = np.maximum.reduceat(distances, first)
+    moved = np.maximum.reduceat(leans, first) * reach
+    narrow = np.ascontiguousarray(np.column_stack([centre, radius, mean, moved]))
+    wide, wide_begins = _group_balls(narrow, reach)
+    return Hierarchy(wide, wide_begins, narrow, begins)
+
+
+def _group_balls(narrow: Array, reach: float) -> tuple[Array, Index]:
+    """Balls around neighbouring balls, as rows of the same kind, and where the balls of each begin."""
+    begins = _beginnings(len(narrow))
+    first = begins[:-1]
+    group = _numbers_of_groups(begins)
+    own_centre, own_radius, own_axis, own_moved = narrow[:, :3], narrow[:, 3], narrow[:, 4:7], narrow[:, 7]
+    low = np.minimum.reduceat(own_centre - own_radius[:, None], first, axis=0)
+    high = np.maximum.reduceat(own_centre + own_radius[:, None], first, axis=0)
+    centre = 0.5 * (low + high)
+    mean = _mean(np.add.reduceat(own_axis, first, axis=0), own_axis[first])
+    distances = np.linalg.norm(own_centre - centre[group], axis=1) + own_radius
+    ways = np.linalg.norm(own_axis - mean[group], axis=1) * reach + own_moved
+    radius = np.maximum.reduceat(distances, first)
+    moved = np.maximum.reduceat(ways, first)
+    return np.ascontiguousarray(np.column_stack([centre, radius, mean, moved])), begins
+
+
+def _numbers_of_groups(begins: Index) -> Index:
+    """To which group each row belongs, of groups that begin at some rows and end at the last of these."""
+    return np.repeat(np.arange(len(begins) - 1), np.diff(begins))
 
 
 def _beginnings(count: int) -> Index:

@@ -75,16 +75,20 @@ def _raise_part(mounting: Mounting, height: float) -> Mounting:
 
 def _depth_in_table(plan: Plan, mounting: Mounting) -> float:
     """How far part and obstacles reach below the top of what carries them, mm; zero where they stand above it."""
-    matrix, up = placement(mounting.table_from_part), np.concatenate([np.eye(3), -np.eye(3)])
+    matrix = placement(mounting.table_from_part)
     boxes = np.array([face.box for body in (plan.part, *plan.obstacles) for face in body.faces])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    corners = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T @ matrix[:3, :3].T + matrix[:3, 3]
+    corners = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
+    on_table = corners @ matrix[:3, :3].T + matrix[:3, 3]
+    lowest, highest = on_table.min(axis=0), on_table.max(axis=0)
+    directions = np.concatenate([np.eye(3), -np.eye(3)])
     depth = 0.0
     for body in mounting.machine.bodies:
-        ends = np.einsum("nc,nc->n", body.convex.support(up), up)
-        beside = (ends[:2] <= corners.min(axis=0)[:2]).any() or (-ends[3:5] >= corners.max(axis=0)[:2]).any()
-        if body.carried == carrier_of(mounting.machine) and not beside:
-            depth = max(depth, float(ends[2] - corners[:, 2].min()) - _LOOSE)
+        ends = np.einsum("nc,nc->n", body.convex.support(directions), directions)
+        body_highest, body_lowest = ends[:3], -ends[3:]
+        is_beside = (body_highest[:2] <= lowest[:2]).any() or (body_lowest[:2] >= highest[:2]).any()
+        if body.carried == carrier_of(mounting.machine) and not is_beside:
+            depth = max(depth, float(body_highest[2] - lowest[2]) - _LOOSE)
     return depth
 
 

@@ -55,9 +55,12 @@ def _sort_by_tool(plan: Plan) -> Plan:
     """A plan whose operations stand, and are numbered, in the order of its tools."""
     order = sorted(plan.operations, key=lambda op: plan.tools.index(op.tool))
     numbers = {op.number: number for number, op in enumerate(order, 1)}
-    made = tuple(replace(op, number=numbers[op.number], rest_of=tuple(sorted(numbers[one] for one in op.rest_of)))
-                 for op in order)
-    return replace(plan, operations=made, blades=None if plan.blades is None else plan.blades.renumbered(numbers))
+    operations = []
+    for op in order:
+        rest_of = tuple(sorted(numbers[one] for one in op.rest_of))
+        operations.append(replace(op, number=numbers[op.number], rest_of=rest_of))
+    blades = None if plan.blades is None else plan.blades.renumbered(numbers)
+    return replace(plan, operations=tuple(operations), blades=blades)
 
 
 def _with_part(jobs: Sequence[PlanningJob], part: Part, faces: Sequence[Face], most: int | None) -> RackPlanner:

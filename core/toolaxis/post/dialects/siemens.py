@@ -123,10 +123,13 @@ def _swivel(a: str, b: str, c: str, direction: int) -> str:
 def _direction(program: Program, station: IndexedPosition) -> int:
     """+1 where the axis that tilts stands at the higher of its two values, -1 where at the lower."""
     rotary = program.machine.rotary
-    tilting = max(range(len(rotary)), key=lambda k: (round(float(np.linalg.norm(rotary[k].direction[:2])), 6), -k))
+    # The axis that tilts is the one that lies flattest, of two that lie alike the first.
+    flatness = [round(float(np.linalg.norm(axis.direction[:2])), 6) for axis in rotary]
+    tilting = flatness.index(max(flatness))
     own = degrees(float(station.angles[tilting]))
-    other = [degrees(float(row[tilting])) for row in station.others]
-    return -1 if any(value > own + 1e-6 for value in other) or (not other and own < 0) else 1
+    others = [degrees(float(row[tilting])) for row in station.others]
+    is_lower = any(other > own + 1e-6 for other in others) if others else own < 0
+    return -1 if is_lower else 1
 
 
 class SiemensTip(TipControl):

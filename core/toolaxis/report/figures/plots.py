@@ -154,11 +154,9 @@ def _draw_cuts(ax: Axes, canvas: Canvas, path: ToolPath, slack: float) -> None:
 
 def _over(canvas: Canvas, run: Array, inside: bool) -> list[Array]:
     """The parts of a line in picture coordinates that lie over something drawn, or over nothing."""
-    place = np.floor((run - canvas.camera.low) / canvas.camera.pixel).astype(int)
-    rows, columns = canvas.camera.shape
-    over = np.isfinite(canvas.depth[np.clip(place[:, 1], 0, rows - 1), np.clip(place[:, 0], 0, columns - 1)]) == inside
-    cuts = np.flatnonzero(np.diff(over)) + 1
-    return [part for part, kept in zip(np.split(run, cuts), np.split(over, cuts), strict=True)
+    is_kept = np.isfinite(canvas.depth_at(run)) == inside
+    cuts = np.flatnonzero(np.diff(is_kept)) + 1
+    return [part for part, kept in zip(np.split(run, cuts), np.split(is_kept, cuts), strict=True)
             if kept[0] and len(part) > 1]
 
 
@@ -171,12 +169,18 @@ def cutting_lines(path: ToolPath) -> list[Array]:
     ----------
     path : ToolPath
     """
-    cutting = path.kind == Motion.CUT
-    starts = np.flatnonzero(cutting & ~np.concatenate([[False], cutting[:-1]]))
-    ends = np.flatnonzero(cutting & ~np.concatenate([cutting[1:], [False]]))
-    known = (path.cc != path.cl).any(axis=1)
-    lines = [slice(max(a - 1, 0), b + 1) for a, b in zip(starts, ends, strict=True)]
-    return [path.cc[line][known[line]] if known[line].any() else path.cc[line] for line in lines]
+    is_cut = path.kind == Motion.CUT
+    is_cut_before = np.concatenate([[False], is_cut[:-1]])
+    is_cut_after = np.concatenate([is_cut[1:], [False]])
+    starts = np.flatnonzero(is_cut & ~is_cut_before)
+    ends = np.flatnonzero(is_cut & ~is_cut_after)
+    is_known = (path.cc != path.cl).any(axis=1)
+    lines = []
+    for start, end in zip(starts, ends, strict=True):
+        rows = slice(max(start - 1, 0), end + 1)
+        line, known = path.cc[rows], is_known[rows]
+        lines.append(line[known] if known.any() else line)
+    return lines
 
 
 def _with_tool(ax: Axes, plan: Plan, op: Operation, view: tuple[Array, Array]) -> None:

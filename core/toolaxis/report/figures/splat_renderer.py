@@ -155,10 +155,15 @@ class Canvas:
     def visible(self, points: Array, slack: float) -> NDArray[np.bool_]:
         """Whether (n, 3) points are not behind what is drawn by more than a slack in mm, (n,)."""
         flat = self.camera.project(points)
-        place = np.floor((flat[:, :2] - self.camera.low) / self.camera.pixel).astype(np.int64)
+        return np.asarray(flat[:, 2] >= self.depth_at(flat[:, :2]) - slack)
+
+    def depth_at(self, flat: Array) -> Array:
+        """Depth of what is drawn at picture coordinates (n, 2), mm; that of the nearest pixel outside the picture."""
+        pixels = np.floor((flat - self.camera.low) / self.camera.pixel).astype(np.int64)
         rows, columns = self.camera.shape
-        row, column = np.clip(place[:, 1], 0, rows - 1), np.clip(place[:, 0], 0, columns - 1)
-        return np.asarray(flat[:, 2] >= self.depth[row, column] - slack)
+        column = np.clip(pixels[:, 0], 0, columns - 1)
+        row = np.clip(pixels[:, 1], 0, rows - 1)
+        return np.asarray(self.depth[row, column])
 
 
 def points_on(faces: Iterable[Face]) -> Array:
@@ -168,7 +173,11 @@ def points_on(faces: Iterable[Face]) -> Array:
     ----------
     faces : iterable of Face
     """
-    return np.concatenate([face.evaluate(uv).point for face in faces for uv in (*face.outline, face.grid(24, 24))])
+    points = []
+    for face in faces:
+        on_face = (*face.outline, face.grid(24, 24))
+        points += [face.evaluate(uv).point for uv in on_face]
+    return np.concatenate(points)
 
 
 def face_splats(face: Face, seen: Camera) -> tuple[Array, Array]:
@@ -197,7 +206,8 @@ def _lengths(face: Face) -> Array:
     if face not in _LENGTHS:
         u0, u1, v0, v1 = face.bounds
         coarse = face.grid(24, 24)
-        d = face.evaluate(coarse if len(coarse) else [((u0 + u1) / 2, (v0 + v1) / 2)])
+        middle = [((u0 + u1) / 2, (v0 + v1) / 2)]
+        d = face.evaluate(coarse if len(coarse) else middle)
         rates = np.linalg.norm([d.su, d.sv], axis=2).max(axis=1)
         _LENGTHS[face] = rates * np.array([u1 - u0, v1 - v0])
     return _LENGTHS[face]
@@ -216,19 +226,22 @@ def splats_of_revolution(outline: Array, tip: Array, axis: Array, pixel: float) 
         Size of a pixel, mm.
     """
     x, y = perpendicular(axis)
-    around = np.linspace(0, 2 * np.pi, int(np.clip(np.ceil(10 * outline[:, 0].max() / pixel), 24, 3 * _MOST)),
-                         endpoint=False)
+    count_around = int(np.clip(np.ceil(10 * outline[:, 0].max() / pixel), 24, 3 * _MOST))
+    around = np.linspace(0, 2 * np.pi, count_around, endpoint=False)
     ring = np.cos(around)[:, None] * x + np.sin(around)[:, None] * y
     points, directions = [], []
     for (r0, z0), (r1, z1) in pairwise(outline):
         length = float(np.hypot(r1 - r0, z1 - z0))
         if length == 0:
             continue
-        s = np.linspace(0, 1, int(np.clip(np.ceil(1.6 * length / pixel), 2, _MOST)))
-        radius, z = r0 + s * (r1 - r0), z0 + s * (z1 - z0)
-        points.append((radius[:, None, None] * ring + z[:, None, None] * axis).reshape(-1, 3) + tip)
-        slope = (z1 - z0) / length * ring - (r1 - r0) / length * axis
-        directions.append(np.broadcast_to(slope, (len(s), *slope.shape)).reshape(-1, 3))
+        count_along = int(np.clip(np.ceil(1.6 * length / pixel), 2, _MOST))
+        share = np.linspace(0, 1, count_along)
+        radius = r0 + share * (r1 - r0)
+        z = z0 + share * (z1 - z0)
+        rings = radius[:, None, None] * ring + z[:, None, None] * axis
+        points.append(rings.reshape(-1, 3) + tip)
+        normal = (z1 - z0) / length * ring - (r1 - r0) / length * axis
+        directions.append(np.broadcast_to(normal, (count_along, *normal.shape)).reshape(-1, 3))
     return np.concatenate(points), np.concatenate(directions)
 
 
