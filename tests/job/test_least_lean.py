@@ -188,7 +188,7 @@ def test_no_axis_is_told_with_the_lean() -> None:
 def test_leans_that_make_no_sense(lean: float, said: str) -> None:
     with pytest.raises(ta.InvalidInput, match=said) as raised:
         plan_hill(lean)
-    assert "kleinste Neigung" in translate(str(raised.value), "german")
+    assert "kleinster Anstellwinkel" in translate(str(raised.value), "german")
 
 
 def test_what_does_not_go_with_it() -> None:

@@ -12,6 +12,7 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.plan.plan import Plan
+from toolaxis.plan.unplanned_area import NOT_BEGUN, UnplannedArea
 
 TOOL = ta.Tool.torus(diameter=8, corner_radius=2, stickout=30, holder=[(12, 0), (12, 30)])
 SMALL = ta.Tool.ball(4, stickout=30, holder=[(12, 0), (12, 30)])
@@ -110,11 +111,20 @@ def test_several_tools_and_a_skin(tmp_path: Path) -> None:
         assert ta.verify(plan).passed
 
 
+def test_a_plan_that_was_stopped_goes_on(part: ta.Part, first: Plan) -> None:
+    two = ta.Part.from_faces([part.face(1), patch(2, 40, 60)])
+    begun = made(two, faces=[1])
+    left = UnplannedArea(2, "2", two.face(2).area, True, NOT_BEGUN)
+    stopped = replace(begun, outcome="cancelled", unplanned=(left,))
+    rest = made(two, after=[stopped])
+    assert {op.face.number for op in rest.operations if op.face.area > 1.0} == {2}
+    assert rest.account.machined > 0.99 * two.face(2).area
+
+
 def test_what_does_not_go_together_is_refused_with_a_sentence(part: ta.Part, first: Plan) -> None:
     other = ta.Part.from_faces([patch(1, 0, 31)])
     for words, asked in (("the plan of setup 1 is one of another part", {"part": other, "after": [first]}),
-                         ("the plan of setup 1 was stopped", {"after": [replace(first, outcome="cancelled")]}),
-                         ("faces are named, and plans of earlier setups too", {"after": [first], "faces": [1]})):
+                          ("faces are named, and earlier setups too", {"after": [first], "faces": [1]})):
         with pytest.raises(InvalidInput, match=words):
             made(**{"part": part, **asked})
 

@@ -81,7 +81,7 @@ def pieces_of(sentence: str) -> list[str]:
 @cache
 def languages() -> tuple[str, ...]:
     """Languages that there is a catalogue for, besides English, as "german"."""
-    return tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.toml")))
+    return tuple(sorted({path.stem.partition("-")[0] for path in Path(__file__).parent.glob("*.toml")}))
 
 
 @cache
@@ -93,8 +93,11 @@ def catalogue(language: str) -> dict[str, str]:
     language : str
         One of `languages`.
     """
-    chapters = tomllib.loads((Path(__file__).parent / f"{language}.toml").read_text(encoding="utf-8"))
-    return {english: form for chapter in chapters.values() for english, form in chapter.items()}
+    found: dict[str, str] = {}
+    for path in sorted(Path(__file__).parent.glob(f"{language}*.toml")):
+        for chapter in tomllib.loads(path.read_text(encoding="utf-8")).values():
+            found |= chapter
+    return found
 
 
 @cache

@@ -20,7 +20,7 @@ Loops = tuple[NDArray[np.float64], ...]
 _LEAST = 0.01
 #: Share of a face up to which areas are the same.
 _SHARE = 1e-3
-#: How far the boxes of faces may differ of parts that are the same one, in parts of the diagonal.
+#: How far boxes and areas of faces may differ of parts that are the same one, in parts of the diagonal and the area.
 _SAME = 1e-6
 
 
@@ -38,12 +38,12 @@ def join_as_before(part: Part, earlier: Sequence[Plan]) -> tuple[Part, tuple[int
     -------
     part : Part
     numbers : tuple of int
-        Of the faces and skins that the plan was asked for.
+        Of the faces and skins that the plan was asked for, those that were not begun when it was stopped among them.
 
     Raises
     ------
     InvalidInput
-        When a plan is one of another part, was stopped, or was asked for faces that are to be avoided now.
+        When a plan is one of another part.
     """
     for number, plan in enumerate(earlier, 1):
         _check_same_part(part, plan, number)
@@ -60,14 +60,19 @@ def join_as_before(part: Part, earlier: Sequence[Plan]) -> tuple[Part, tuple[int
 
 
 def _check_same_part(part: Part, plan: Plan, number: int) -> None:
-    """Refuse a plan of another part, or one that was stopped."""
+    """Refuse a plan of another part."""
     own, its = part.faces, (plan.part.original or plan.part).faces
-    same = [face.number for face in own] == [face.number for face in its] and all(
-        np.abs(one.box - other.box).max() <= _SAME * part.diagonal for one, other in zip(own, its, strict=True))
+    same = len(own) == len(its) and all(_is_same_face(one, other, _SAME * part.diagonal)
+                                        for one, other in zip(own, its, strict=True))
     if not same:
         raise InvalidInput(f"the plan of setup {number} is one of another part: plan all setups of one part")
-    if plan.outcome == "cancelled":
-        raise InvalidInput(f"the plan of setup {number} was stopped before all faces were done: finish it first")
+
+
+def _is_same_face(one: Face, other: Face, most: float) -> bool:
+    """Whether faces of two parts have the same number, the same box to so many mm, and the same area."""
+    if one.number != other.number or np.abs(one.box - other.box).max() > most:
+        return False
+    return abs(one.area - other.area) <= _SAME * one.area
 
 
 def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],

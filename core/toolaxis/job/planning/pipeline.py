@@ -420,13 +420,12 @@ def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
 def _check_after(request: _PlanRequest) -> None:
     """That a plan for a later setup asks for nothing but what earlier plans left."""
     if request.faces is not None:
-        raise InvalidInput("faces are named, and plans of earlier setups too, which tell what is left: leave one of "
-                           "both out")
+        raise InvalidInput("faces are named, and earlier setups too: leave one of both out")
     if request.division:
-        raise InvalidInput("sub-surfaces given by hand do not go with plans of earlier setups: leave one of both out")
+        raise InvalidInput("sub-surfaces given by hand do not go with earlier setups: leave one of both out")
     if request.strategy.in_layers:
-        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with plans of earlier setups, which "
-                           "leave pieces of faces: take another strategy")
+        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with earlier setups, which leave pieces of "
+                           "faces: take another one")
 
 
 def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:
