@@ -234,7 +234,7 @@ def test_the_command_tells_what_is_held(tmp_path: Path, capsys: pytest.CaptureFi
                  "--limits", "cone:0,0,1,30", "--out", str(tmp_path / "out"), "--no-pictures", "--workers", "1"])
     assert code == 0
     out = capsys.readouterr()
-    assert "held in this clamping (y<5) and not asked for:" in out.out + out.err
+    assert "clamped in this setup (y<5) and not asked for:" in out.out + out.err
 
 
 def test_a_half_space_is_what_is_deep_in_it() -> None:

@@ -28,6 +28,9 @@ from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
+#: Area in the clamped side from which on another setup is offered, mm^2.
+_TOLD = 0.05
+
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
     """Plan, write the folder, and print the operations.
@@ -202,7 +205,7 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     _of_failures(Path(given.out))
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
-    if made.held and made.outcome != "cancelled":
+    if any(one.area >= _TOLD for one in made.held):
         after = " ".join(f"--after {folder}" for folder in [*given.after, given.out])
         say(f"toolaxis: for the other setup: toolaxis plan {given.part} {after} --held SIDE --out DIR")
     if made.outcome == "cancelled":

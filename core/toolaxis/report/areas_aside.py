@@ -24,10 +24,10 @@ def describe_held(plan: Plan) -> str:
     """
     if not plan.inputs.held:
         return ""
-    if not plan.held:
-        return f"held in this clamping ({plan.inputs.held}): nothing of the faces that are asked for"
     area = sum(one.area for one in plan.held)
-    return (f"held in this clamping ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
+    if area < _TOLD:
+        return f"clamped in this setup ({plan.inputs.held}): nothing of the faces that are asked for"
+    return (f"clamped in this setup ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
             f"{_name_areas(plan.held)}")
 
 
