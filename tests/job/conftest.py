@@ -33,3 +33,15 @@ def folder(small_plan: Plan, tmp_path: Path) -> Path:
         write_plan(small_plan, stage.folder)
         stage.publish()
     return tmp_path / "plan"
+
+
+@pytest.fixture
+def sheet_file(tmp_path: Path) -> str:
+    """A STEP file of a wavy sheet of 26 x 18 mm."""
+    cq = pytest.importorskip("cadquery")
+    x, y = np.linspace(0, 26, 5), np.linspace(0, 18, 5)
+    rows = [[cq.Vector(a, b, np.sin(a / 9) * np.cos(b / 11)) for b in y] for a in x]
+    face = cq.Face.makeSplineApprox(rows, tol=1e-3, minDeg=3, maxDeg=3)
+    path = str(tmp_path / "sheet.step")
+    cq.exporters.export(cq.Workplane(obj=face), path)
+    return path

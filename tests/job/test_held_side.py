@@ -224,13 +224,8 @@ def test_sub_surfaces_given_by_hand_do_not_go_with_it() -> None:
         made("x<8", division=[ta.SubSurface(1)])
 
 
-def test_the_command_tells_what_is_held(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    cq = pytest.importorskip("cadquery")
-    x, y = np.linspace(0, 24, 5), np.linspace(0, 18, 5)
-    rows = [[cq.Vector(a, b, np.sin(a / 9) * np.cos(b / 11)) for b in y] for a in x]
-    cq.exporters.export(cq.Workplane(obj=cq.Face.makeSplineApprox(rows, tol=1e-3, minDeg=3, maxDeg=3)),
-                        str(tmp_path / "sheet.step"))
-    code = main(["plan", str(tmp_path / "sheet.step"), "--tool", "ball:8", "--scallop", "0.1", "--held", "y<5",
+def test_the_command_tells_what_is_held(sheet_file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = main(["plan", sheet_file, "--tool", "ball:8", "--scallop", "0.1", "--held", "y<5",
                  "--limits", "cone:0,0,1,30", "--out", str(tmp_path / "out"), "--no-pictures", "--workers", "1"])
     assert code == 0
     out = capsys.readouterr()

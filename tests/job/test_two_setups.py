@@ -11,6 +11,7 @@ import toolaxis as ta
 from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
+from toolaxis.job.planning.earlier_setups import leave_out_machined
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import NOT_BEGUN, UnplannedArea
 
@@ -94,6 +95,14 @@ def test_a_third_one_begins_after_both(part: ta.Part, first: Plan, second: Plan)
     assert third.account.machined > 0.99 * left and ta.verify(third).passed
 
 
+def test_what_two_plans_machine_is_taken_off_once(part: ta.Part, first: Plan) -> None:
+    """Sub-surfaces that overlap: the same plan twice is the extreme."""
+    once, (before,) = leave_out_machined(part.faces, [first])
+    twice, (both,) = leave_out_machined(part.faces, [first, first])
+    assert sum(face.area for face in twice) == pytest.approx(sum(face.area for face in once), rel=1e-4)
+    assert both.area == pytest.approx(before.area, rel=1e-4)
+
+
 def test_several_tools_and_a_skin(tmp_path: Path) -> None:
     """Rests of larger tools were machined by smaller ones; faces are joined as they were."""
     part = ta.Part.from_faces([patch(1, 0, 16), patch(2, 16, 32)])
@@ -129,13 +138,8 @@ def test_what_does_not_go_together_is_refused_with_a_sentence(part: ta.Part, fir
             made(**{"part": part, **asked})
 
 
-def test_the_command_plans_both(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    cq = pytest.importorskip("cadquery")
-    x, y = np.linspace(0, 26, 5), np.linspace(0, 14, 5)
-    rows = [[cq.Vector(a, b, np.sin(a / 9) * np.cos(b / 11)) for b in y] for a in x]
-    cq.exporters.export(cq.Workplane(obj=cq.Face.makeSplineApprox(rows, tol=1e-3, minDeg=3, maxDeg=3)),
-                        str(tmp_path / "sheet.step"))
-    words = ["plan", str(tmp_path / "sheet.step"), "--tool", "ball:8", "--scallop", "0.2", "--limits", "cone:0,0,1,30",
+def test_the_command_plans_both(sheet_file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["plan", sheet_file, "--tool", "ball:8", "--scallop", "0.2", "--limits", "cone:0,0,1,30",
              "--no-pictures", "--workers", "1"]
     one, two = str(tmp_path / "one"), str(tmp_path / "two")
     assert main([*words, "--held", "x<9", "--out", one]) == 0

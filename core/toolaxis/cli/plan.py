@@ -28,9 +28,6 @@ from toolaxis.strategies.strategy import Asked
 from toolaxis.tolerances import Tolerance
 from toolaxis.tools.tool import Tool
 
-#: Area in the clamped side from which on another setup is offered, mm^2.
-_TOLD = 0.05
-
 
 def run(given: Namespace, asked: Callable[[], bool]) -> int:
     """Plan, write the folder, and print the operations.
@@ -205,7 +202,9 @@ def _print_plan(made: Plan, given: Namespace, stopped: bool) -> int:
     _of_failures(Path(given.out))
     count = len(made.operations)
     say(f"toolaxis: {count} {'operation' if count == 1 else 'operations'} in {given.out}")
-    if any(one.area >= _TOLD for one in made.held):
+    from toolaxis.report.areas_aside import has_clamped_area
+
+    if has_clamped_area(made):
         after = " ".join(f"--after {folder}" for folder in [*given.after, given.out])
         say(f"toolaxis: for the other setup: toolaxis plan {given.part} {after} --held SIDE --out DIR")
     if made.outcome == "cancelled":

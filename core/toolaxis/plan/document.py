@@ -14,9 +14,8 @@ from toolaxis.machine.work_coordinates import WorkCoordinates
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades_document import blades_document, blades_from
 from toolaxis.plan.choices import ISO
-from toolaxis.plan.held_face import HeldFace
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.machine_document import machine_document, machine_from, rotary_of
-from toolaxis.plan.machined_before import MachinedBefore
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import AxisMap, Orientation
 from toolaxis.plan.part_account import PartAccount
@@ -471,7 +470,7 @@ def plan_from(document: Mapping[str, Any], part: Part, obstacles: Sequence[Part]
         order=_order_from(document.get("order")),
         in_the_way=tuple(document.get("in_the_way", ())),
         faults=tuple(Fault(sentence) for sentence in document.get("faults", ())),
-        held=tuple(HeldFace(**one) for one in of_part.get("held", ())),
-        machined_before=tuple(MachinedBefore(**one) for one in of_part.get("machined_before", ())),
+        held=tuple(FaceShare(**one) for one in of_part.get("held", ())),
+        machined_before=tuple(FaceShare(**one) for one in of_part.get("machined_before", ())),
         unplanned=tuple(_unplanned_from(one) for one in of_part.get("unplanned", ())),
     )

@@ -13,8 +13,7 @@ from toolaxis.machine.setup import Mounting
 from toolaxis.plan.baseline import Baseline
 from toolaxis.plan.blades import Blades
 from toolaxis.plan.choices import DIRECTIONS, FEEDRATE, FIELD, ISO, OBJECTIVES, PASSES, PLANES, SPINDLE
-from toolaxis.plan.held_face import HeldFace
-from toolaxis.plan.machined_before import MachinedBefore
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.part_account import PartAccount
@@ -386,9 +385,9 @@ class Plan:
         Where the program failed on no single sub-surface, as in timing the whole: the plan is incomplete then.
     at_points : bool
         Whether the method checks the cutter on the machined face at points only; not written, as the method tells it.
-    held : tuple of HeldFace
+    held : tuple of FaceShare
         What of the faces that were asked for lies in the side that is held: no operation is to machine it.
-    machined_before : tuple of MachinedBefore
+    machined_before : tuple of FaceShare
         What of the faces plans of earlier setups machine: no operation is to machine it again.
     unplanned : tuple of UnplannedArea
         What else of them is in no operation, as where the plan was stopped.
@@ -409,8 +408,8 @@ class Plan:
     in_the_way: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
     at_points: bool = False
-    held: tuple[HeldFace, ...] = ()
-    machined_before: tuple[MachinedBefore, ...] = ()
+    held: tuple[FaceShare, ...] = ()
+    machined_before: tuple[FaceShare, ...] = ()
     unplanned: tuple[UnplannedArea, ...] = ()
 
     def part_around(self, number: int) -> Part:

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from toolaxis.plan.held_face import HeldFace
-from toolaxis.plan.machined_before import MachinedBefore
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 
@@ -15,6 +14,16 @@ _TOLD = 0.05
 _SHOWN = 0.005
 
 
+def has_clamped_area(plan: Plan) -> bool:
+    """Whether something of the faces lies in the clamped side, for another setup.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    return sum(one.area for one in plan.held) >= _TOLD
+
+
 def describe_held(plan: Plan) -> str:
     """What of the faces is held in the clamping, and so is not asked for; empty where no side is held.
 
@@ -24,9 +33,9 @@ def describe_held(plan: Plan) -> str:
     """
     if not plan.inputs.held:
         return ""
-    area = sum(one.area for one in plan.held)
-    if area < _TOLD:
+    if not has_clamped_area(plan):
         return f"clamped in this setup ({plan.inputs.held}): nothing of the faces that are asked for"
+    area = sum(one.area for one in plan.held)
     return (f"clamped in this setup ({plan.inputs.held}) and not asked for: {area:.1f} mm2, of faces "
             f"{_name_areas(plan.held)}")
 
@@ -90,7 +99,7 @@ def describe_open(plan: Plan) -> str:
     return f"stays open: {left:.1f} of {found.area:.1f} mm2 ({100 * left / found.area:.1f} %){told}"
 
 
-def _name_areas(some: Sequence[HeldFace | MachinedBefore | UnplannedArea]) -> str:
+def _name_areas(some: Sequence[FaceShare | UnplannedArea]) -> str:
     """Faces by their labels, with the area where it is not all of one."""
     named = [one.label if one.whole else f"{one.label} ({one.area:.1f} mm2 of it)" for one in some]
     more = f" and {len(named) - _NAMED} more" if len(named) > _NAMED else ""

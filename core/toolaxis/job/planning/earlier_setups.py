@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons, without
-from toolaxis.plan.machined_before import MachinedBefore
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
@@ -76,7 +76,7 @@ def _is_same_face(one: Face, other: Face, most: float) -> bool:
 
 
 def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],
-                       ) -> tuple[tuple[Face, ...], tuple[MachinedBefore, ...]]:
+                       ) -> tuple[tuple[Face, ...], tuple[FaceShare, ...]]:
     """What of faces no plan of an earlier setup machines, and what these machine: all and nothing without any.
 
     Parameters
@@ -106,9 +106,8 @@ def leave_out_machined(faces: Sequence[Face], earlier: Sequence[Plan],
         rest = _rest_of(face, done)
         if rest is not None and rest.area >= _LEAST:
             left.append(rest if done else face)
-        machined = face.area - (0.0 if rest is None else rest.area)
         if done:
-            before.append(MachinedBefore(face.number, face.label, max(machined, 0.0), rest is None))
+            before.append(FaceShare.besides(face, rest))
     if not left:
         raise InvalidInput("earlier setups machine all that is asked for: nothing is left to plan")
     return tuple(left), tuple(before)
@@ -126,7 +125,7 @@ def _rest_of(face: Face, done: Sequence[Operation]) -> Face | None:
     found = 0.0 if rest is None else rest.area
     if abs(found - expected) <= max(_SHARE * face.area, _LEAST):
         return rest
-    loops = face.outline  # sub-surfaces overlap, as those of blades that stand close may
+    loops = face.outline  # sub-surfaces overlap, as those given by hand may a little
     for op in done:
         loops = _take_off(loops, op)
     return face.trimmed(loops) if loops else None

@@ -9,7 +9,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.contours import contours
 from toolaxis.numeric.sparse_grid import SparseGrid
 from toolaxis.path.rest_material import split
-from toolaxis.plan.held_face import HeldFace
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HalfSpace
 from toolaxis.shape.part import Part
@@ -66,7 +66,7 @@ def _lines(low: float, high: float) -> Array:
     return np.asarray(low - _BEYOND * pitch + pitch * np.arange(_CELLS + 3))
 
 
-def cut_faces(part: Part, faces: Iterable[Face]) -> tuple[tuple[Face, ...], tuple[HeldFace, ...]]:
+def cut_faces(part: Part, faces: Iterable[Face]) -> tuple[tuple[Face, ...], tuple[FaceShare, ...]]:
     """What of faces is to be machined in a clamping, and what of them is held in it.
 
     Parameters
@@ -86,6 +86,5 @@ def cut_faces(part: Part, faces: Iterable[Face]) -> tuple[tuple[Face, ...], tupl
     free = tuple(face for face in cut if face is not None)
     if not free:
         raise InvalidInput("all chosen faces lie in the clamped side: clamp another side, or choose other faces")
-    held = tuple(HeldFace(face.number, face.label, face.area - (0.0 if left is None else left.area), left is None)
-                 for face, left in zip(asked, cut, strict=True) if left is not face)
+    held = tuple(FaceShare.besides(face, left) for face, left in zip(asked, cut, strict=True) if left is not face)
     return free, held

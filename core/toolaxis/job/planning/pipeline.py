@@ -43,7 +43,7 @@ from toolaxis.machine.setup import MachineLike, Mounting, machine_limits
 from toolaxis.numeric.shares import use_cores
 from toolaxis.partition.partition import check_count
 from toolaxis.plan.choices import FEEDRATE, ISO, SCALLOP, SPINDLE
-from toolaxis.plan.held_face import HeldFace
+from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.plan import Plan, PlanInputs
 from toolaxis.plan.sub_surface import SubSurface
 from toolaxis.progress import NO_PROGRESS, Progress, activate_progress
@@ -428,7 +428,7 @@ def _check_after(request: _PlanRequest) -> None:
                            "faces: take another one")
 
 
-def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[HeldFace, ...]) -> Plan:
+def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[FaceShare, ...]) -> Plan:
     """A plan that tells what of its faces is held in the clamping, hidden in a skin, or was not begun."""
     with activate_progress(NO_PROGRESS):  # what is finished is told of, whoever wants to stop
         with_not_begun = add_not_begun(plan, faces)

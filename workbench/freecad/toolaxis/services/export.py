@@ -260,7 +260,7 @@ def _with_rests(made, rows):
 
 def _areas_in_no_operation(operations):
     """What of the faces is in no operation, as a plan's fields; nothing unless all of one whole plan is written."""
-    from toolaxis.plan.held_face import HeldFace
+    from toolaxis.plan.face_share import FaceShare
     from toolaxis.plan.unplanned_area import UnplannedArea
 
     above = plan_of(operations[0])
@@ -269,7 +269,7 @@ def _areas_in_no_operation(operations):
         return {}
     words = json.loads(above.InNoOperation)
     return {"unplanned": tuple(UnplannedArea(**{**one, "point": tuple(one["point"])}) for one in words["unplanned"]),
-            "held": tuple(HeldFace(**one) for one in words["held"])}
+            "held": tuple(FaceShare(**one) for one in words["held"])}
 
 
 def _outcome(made, tools, aside):
