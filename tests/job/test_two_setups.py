@@ -12,6 +12,7 @@ from toolaxis.cli.main import main
 from toolaxis.errors import InvalidInput
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.planning.earlier_setups import leave_out_machined
+from toolaxis.numeric.polygons import signed_area
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import NOT_BEGUN, UnplannedArea
 
@@ -101,6 +102,27 @@ def test_what_two_plans_machine_is_taken_off_once(part: ta.Part, first: Plan) ->
     twice, (both,) = leave_out_machined(part.faces, [first, first])
     assert sum(face.area for face in twice) == pytest.approx(sum(face.area for face in once), rel=1e-4)
     assert both.area == pytest.approx(before.area, rel=1e-4)
+
+
+@pytest.mark.parametrize("share", [0.28125, 1 / 3, 0.7])
+def test_corners_that_lie_on_the_edges_of_others_leave_nothing(part: ta.Part, first: Plan, share: float) -> None:
+    """What rounding leaves between a corner and the edge it lies on is no piece of the face."""
+    face = part.face(1)
+    low, high = np.array([0.625, 0.0]), np.array([0.7, 1.0])
+    corner = low + share * (high - low)
+    left = np.array([[0.0, 0.0], low, high, [0.0, 1.0]])
+    below = np.array([low, [1.0, 0.0], [1.0, corner[1]], corner])
+    beside = corner - [0.0, 1.2e-16]  # the same corner, cut once more
+    above = np.array([beside, [1.0, corner[1]], [1.0, 1.0], high])
+    pieces = [face.trimmed((loop,)) for loop in (left, below, above)]
+    done = [replace(first.operations[0], face=piece, zones=()) for piece in pieces]
+    for names in ((0, 1), (0, 2), (1, 2), (0, 1, 2)):
+        (*rest, other), _ = leave_out_machined((face, patch(2, 40, 60)),
+                                               [replace(first, operations=tuple(done[i] for i in names))])
+        assert other.number == 2
+        kept = sum(piece.area for i, piece in enumerate(pieces) if i not in names)
+        assert sum(piece.area for piece in rest) == pytest.approx(kept, rel=1e-6)
+        assert all(abs(signed_area(loop)) > 1e-3 for piece in rest for loop in piece.outline)
 
 
 def test_several_tools_and_a_skin(tmp_path: Path) -> None:

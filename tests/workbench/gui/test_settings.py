@@ -148,14 +148,17 @@ def test_reasons_progress_and_wrong_inputs_are_german(german, wavy):
     assert form.message.text().startswith("Rillenhöhe ist 50"), form.message.text()
     assert "eine kleinere Rillenhöhe angeben" in form.message.text()
     assert form.remedy1.isVisible() and form.remedy1.text().startswith("Rillenhöhe 0"), form.remedy1.text()
-    german.type(form.scallop, "0.1 mm")
-    form.limits.setCurrentIndex(1)
-    form.limitZ.setValue(-1.0)
-    german.type(form.cone, "10 deg")
+    german.type(form.scallop, "0.005 mm")  # long enough that what it says along the way is seen
     said = set()
     german.press(form.compute)
     german.wait(lambda: said.add(form.message.text().split("\n")[0]) or form.compute.isEnabled(), "the end")
     assert any(text.startswith("Fläche ") for text in said), said
+    german.type(form.scallop, "0.1 mm")
+    form.limits.setCurrentIndex(1)
+    form.limitZ.setValue(-1.0)
+    german.type(form.cone, "10 deg")
+    german.press(form.compute)
+    german.wait(lambda: said.add(form.message.text().split("\n")[0]) or form.compute.isEnabled(), "the end")
     assert not any("Face " in text or "axes" in text for text in said), said
     reasons = form.reasons.text().split("\n")
     assert reasons[0].startswith("Unmöglich") and " Achsen " in reasons[0], reasons

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toolaxis.errors import InvalidInput
 from toolaxis.numeric.polygon_boolean import divide_nearly, unite_polygons, without
+from toolaxis.numeric.polygons import signed_area
 from toolaxis.plan.face_share import FaceShare
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
@@ -18,6 +19,8 @@ Loops = tuple[NDArray[np.float64], ...]
 
 #: Area up to which what is left of a face is not worth a sub-surface, mm^2.
 _LEAST = 0.01
+#: Share of the area inside a face's borders, in its parameters, up to which a loop encloses nothing.
+_NOTHING = 1e-9
 #: Share of a face up to which areas are the same.
 _SHARE = 1e-3
 #: How far boxes and areas of faces may differ of parts that are the same one, in parts of the diagonal and the area.
@@ -121,14 +124,24 @@ def _rest_of(face: Face, done: Sequence[Operation]) -> Face | None:
         # Sub-surfaces and zones were cut out of the face: they have its very corners, and edges cancel out.
         loops = unite_polygons(without(loops, op.face.outline), _zones_of(op))
         expected -= op.face.area - sum(zone.area for zone in op.zones if zone.at_wall)
-    rest = face.trimmed(loops) if loops else None
+    rest = _trim_to(face, loops)
     found = 0.0 if rest is None else rest.area
     if abs(found - expected) <= max(_SHARE * face.area, _LEAST):
         return rest
     loops = face.outline  # sub-surfaces overlap, as those given by hand may a little
     for op in done:
         loops = _take_off(loops, op)
-    return face.trimmed(loops) if loops else None
+    return _trim_to(face, loops)
+
+
+def _trim_to(face: Face, loops: Loops) -> Face | None:
+    """What of a face lies inside loops; None where that is nothing.
+
+    Corners on the edge of another loop lie beside it by rounding: what is between is no piece of the face.
+    """
+    least = _NOTHING * sum(abs(signed_area(loop)) for loop in face.outline)
+    kept = tuple(loop for loop in loops if abs(signed_area(loop)) > least)
+    return face.trimmed(kept) if kept else None
 
 
 def _zones_of(op: Operation) -> Loops:
