@@ -96,7 +96,7 @@ def _silent() -> Iterator[None]:
             one.setLevel(level)
 
 
-def by_cluster(client: "Client", tasks: Iterator[BatchTask],
+def by_cluster(client: "Client", tasks: Iterator[BatchTask | None],
                told: Callable[[str], None]) -> Iterator[tuple[BatchTask, BatchAnswer] | None]:
     """Answers to tasks from a cluster, as they come.
 
@@ -104,7 +104,7 @@ def by_cluster(client: "Client", tasks: Iterator[BatchTask],
     ----------
     client : distributed.Client
     tasks : iterator of BatchTask
-        Asked for the next one when the cluster can take it.
+        Asked for the next one when the cluster can take it; None where the next one has to wait for one at work.
     told : callable
         Takes a sentence where the cluster has no workers.
 

@@ -15,7 +15,7 @@ from typing import Any
 from toolaxis.batch.jobfile import CheckedJob
 from toolaxis.batch.journal import Journal
 from toolaxis.batch.summary import JobRow, summary_csv, summary_document
-from toolaxis.batch.task import BatchAnswer
+from toolaxis.batch.task import BatchAnswer, EarlierPlan
 from toolaxis.errors import InvalidInput, JobError, MissingBackend
 from toolaxis.job.files.plan_folder import make_folders, remove_empty
 
@@ -150,6 +150,28 @@ class BatchFolder:
             self.notes.append(f"job {job.name} was finished, but its {missing[0]} is gone: it is planned again")
             return None
         return found
+
+    def earlier_plan(self, name: str) -> EarlierPlan:
+        """The plan of a job that has one.
+
+        Parameters
+        ----------
+        name : str
+            Of the job.
+
+        Raises
+        ------
+        InvalidInput
+            When a file of it cannot be read any more.
+        """
+        target = self.path / name
+        found = _read(target)
+        try:
+            files = {} if found is None else {one: (target / one).read_bytes() for one in found["files"]}
+        except OSError as reason:
+            raise InvalidInput(f"job {name}, after which this one goes on, has lost {reason.filename}: run it "
+                               "again") from reason
+        return EarlierPlan(name, files)
 
     def started(self, job: CheckedJob) -> None:
         """Write down that a job begins.

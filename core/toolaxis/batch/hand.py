@@ -185,13 +185,14 @@ def _resident(number: int) -> int:
         return 0
 
 
-def by_hand(tasks: Iterator[BatchTask], workers: int, above: Path) -> Iterator[tuple[BatchTask, BatchAnswer] | None]:
+def by_hand(tasks: Iterator[BatchTask | None], workers: int,
+            above: Path) -> Iterator[tuple[BatchTask, BatchAnswer] | None]:
     """Answers to tasks from processes of this machine, as they come.
 
     Parameters
     ----------
     tasks : iterator of BatchTask
-        Asked for the next one when a process is free.
+        Asked for the next one when a process is free; None where the next one has to wait for one at work.
     workers : int
         Number of processes.
     above : Path

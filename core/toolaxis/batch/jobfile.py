@@ -18,6 +18,7 @@ from toolaxis.errors import InvalidInput, ToolAxisError
 from toolaxis.job.inputs.rack_inputs import RackInputs, check_rack_inputs
 from toolaxis.job.inputs.spec import Spec, numbers_to_avoid, parse_allowances
 from toolaxis.job.inputs.tool_library import GENERAL_RACK, load_library
+from toolaxis.job.planning.earlier_setups import check_after
 from toolaxis.machine.library import load_machine, machine_to_toml
 from toolaxis.machine.limits import parse_limits
 from toolaxis.machine.machine import Machine
@@ -46,7 +47,7 @@ _ABOVE_ZERO = ("minutes", "timeout", "memory")
 #: What tools have of their own, or goes by how many there are, unless a job says it.
 _OF_TOOL = ("objective", "feedrate", "spindle")
 #: What a job may say, besides its part, tool, obstacles and machine, which need not be words.
-KEYS = ("name", "part", "tool", "tools", "machine", "obstacles", *_INPUTS, *_OF_TOLERANCE, *_ASKED, *_OWN)
+KEYS = ("name", "part", "tool", "tools", "machine", "obstacles", "after", *_INPUTS, *_OF_TOLERANCE, *_ASKED, *_OWN)
 _NAME = re.compile(r"[\w+-][\w.+ -]*", re.ASCII)
 
 
@@ -70,6 +71,8 @@ class CheckedJob:
         feedrate and spindle where they are given, else None: tools of a rack have rates of their own.
     key : str
         SHA-256 of all that the plan depends on: the same for the same plan, another one for another.
+    after : dict of str to str
+        Jobs for the setups before this one, the first one first, with their keys.
     """
 
     name: str
@@ -79,6 +82,7 @@ class CheckedJob:
     bodies: tuple[Any, ...]
     own: dict[str, Any]
     key: str
+    after: dict[str, str]
 
     def task(self) -> BatchTask:
         """What a process needs to carry it out.
@@ -89,7 +93,7 @@ class CheckedJob:
             When a file cannot be read any more, or is another one than when the batch began.
         """
         part, *obstacles = (_source(body) for body in self.bodies)
-        if _key(self.spec, self.tools, self.machine, self.own, (part, *obstacles)) != self.key:
+        if _key(self.spec, self.tools, self.machine, self.own, (part, *obstacles), self.after) != self.key:
             raise InvalidInput(f"{part.name}: a file of the job was changed while the batch ran: run it again")
         inputs = self.spec.inputs
         options = {**{name: getattr(inputs, name) for name in _INPUTS if name != "scallop"},
@@ -127,7 +131,9 @@ def read_jobs(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]]) -> tuple[
         rows, folder = [dict(row) for row in jobs], Path()
     if not rows:
         raise InvalidInput("the batch has no jobs: give at least one, under [[jobs]]")
-    made = [_check_job(row, number, folder) for number, row in enumerate(rows, 1)]
+    made: list[CheckedJob] = []
+    for number, row in enumerate(rows, 1):
+        made.append(_check_job(row, number, folder, {one.name: one.key for one in made}))
     first: dict[str, int] = {}
     for number, one in enumerate(made, 1):
         other = first.setdefault(one.name.casefold(), number)
@@ -159,15 +165,16 @@ def _table(path: Path) -> list[dict[str, Any]]:
     return [{**defaults, **row} for row in rows]
 
 
-def _check_job(row: dict[str, Any], number: int, folder: Path) -> CheckedJob:
+def _check_job(row: dict[str, Any], number: int, folder: Path, before: Mapping[str, str]) -> CheckedJob:
+    """A job that is right; `before` has the keys of those that stand before it, by their names."""
     said = row.get("name")
     try:
-        return _check_row(row, folder)
+        return _check_row(row, folder, before)
     except ToolAxisError as reason:
         raise InvalidInput(f"job {number}{f' ({said})' if isinstance(said, str) else ''}: {reason}") from reason
 
 
-def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
+def _check_row(row: dict[str, Any], folder: Path, before: Mapping[str, str]) -> CheckedJob:
     unknown = sorted(set(row) - set(KEYS))
     if unknown:
         raise InvalidInput(f"unknown {unknown[0]!r}: use {', '.join(KEYS)}")
@@ -208,8 +215,22 @@ def _check_row(row: dict[str, Any], folder: Path) -> CheckedJob:
     if len(tools) > 1:
         check_rack_inputs(RackInputs(spec.inputs.method, chosen.moves, spec.regions,
                                      spec.orientations is not None, compare=own["compare"]))
-    key = _key(spec, tools, machine, own, tuple(map(_source, bodies)))
-    return CheckedJob(_name(row, bodies[0]), spec, tools, machine, bodies, own, key)
+    after = _earlier_jobs(row, before)
+    if after:
+        check_after(chosen, named=bool(spec.faces))
+    key = _key(spec, tools, machine, own, tuple(map(_source, bodies)), after)
+    return CheckedJob(_name(row, bodies[0]), spec, tools, machine, bodies, own, key, after)
+
+
+def _earlier_jobs(row: Mapping[str, Any], before: Mapping[str, str]) -> dict[str, str]:
+    """The jobs after which a job goes on, with their keys."""
+    given = row.get("after", [])
+    names = given if isinstance(given, list | tuple) else [given]
+    for name in names:
+        if not isinstance(name, str) or name not in before:
+            raise InvalidInput(f"after is {name!r}: give the name of a job that stands before this one, or a list of "
+                               "such names")
+    return {name: before[name] for name in names}
 
 
 def _sources(row: Mapping[str, Any], folder: Path) -> list[Any]:
@@ -340,12 +361,13 @@ def _source(body: Any) -> PartBytes:
 
 
 def _key(spec: Spec, tools: Sequence[Tool], machine: Machine | None, own: Mapping[str, Any],
-         sources: tuple[PartBytes, ...]) -> str:
+         sources: tuple[PartBytes, ...], after: Mapping[str, str]) -> str:
     asked = {**{name: getattr(spec, name) for name in ("faces", "regions", "orientations", "offset")},
              "inputs": asdict(spec.inputs), "tools": [tool_document(tool) for tool in tools],
              **{name: own[name] for name in _OF_TOOL},
              "machine": "" if machine is None else machine_to_toml(machine),
              "sources": [source.sha256 for source in sources], "version": __version__,
              **{name: own[name] for name in ("compare", "verify", "pictures", "strategy")},
-             **{name: own[name] for name in ("roughness", "minutes") if own[name] is not None}}
+             **{name: own[name] for name in ("roughness", "minutes") if own[name] is not None},
+             **({"after": list(after.values())} if after else {})}
     return hashlib.sha256(json.dumps(asked, sort_keys=True).encode()).hexdigest()

@@ -6,6 +6,7 @@ import resource
 import shutil
 import signal
 import sys
+import tempfile
 import threading
 import time
 import traceback
@@ -20,7 +21,7 @@ from typing import Any
 
 from toolaxis import __version__
 from toolaxis.batch.hand import MEGABYTE, descendants
-from toolaxis.batch.task import BatchAnswer, BatchTask, PartBytes
+from toolaxis.batch.task import BatchAnswer, BatchTask, EarlierPlan, PartBytes
 from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 from toolaxis.numeric.jit import compilations
 from toolaxis.plan.plan import Plan
@@ -95,7 +96,7 @@ def _write_planned(task: BatchTask, scratch: Path, folder: Path, known: dict[str
         resource.setrlimit(resource.RLIMIT_DATA, (int(task.memory * MEGABYTE),) * 2)
     progress = Progress(cancelled=TimeLimit(task.minutes).is_up)
     made = plan(part, task.tools, machine=task.machine, obstacles=obstacles or None, workers=1, progress=progress,
-                **task.options)
+                after=[_earlier_plan(one, scratch) for one in task.earlier], **task.options)
     out_of_time = made.outcome == "cancelled"
     if out_of_time and not made.operations:
         raise TimeoutError(f"no face was finished within the {task.minutes:g} min of 'minutes'")
@@ -137,6 +138,16 @@ def _figures(made: Plan) -> dict[str, Any]:
     return {"operations": len(made.operations), "without_axis": sum(not op.done for op in made.operations),
             "orientations": made.orientations, "passes": int(sum(op.orientation.passes for op in done)),
             **{name: float(size) if isfinite(size) else None for name, size in sizes.items()}}
+
+
+def _earlier_plan(earlier: EarlierPlan, scratch: Path) -> Plan:
+    """The plan for a setup before, read from files that are gone afterwards."""
+    from toolaxis.job.files.plan_folder import read_plan
+
+    with tempfile.TemporaryDirectory(prefix="earlier-", dir=scratch) as folder:
+        for name, content in earlier.files.items():
+            (Path(folder) / name).write_bytes(content)
+        return read_plan(Path(folder))
 
 
 def _place(source: PartBytes, scratch: Path) -> Path:

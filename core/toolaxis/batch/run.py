@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, closing, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -59,11 +59,12 @@ def batch(jobs: str | PathLike[str] | Iterable[Mapping[str, Any]], out: str | Pa
     jobs : path or iterable of mappings
         A TOML file with [defaults] and [[jobs]], or the jobs themselves.  Each has the keys of `toolaxis.plan` and of
         the command: part, tool, scallop, faces, holder, stickout, obstacles, regions, orientations, machine, offset,
-        limits, allowance, allowance_on, stock, greatest_step_over, lead, origin, stock_box, avoid, held, method,
+        limits, allowance, allowance_on, stock, greatest_step_over, lead, origin, stock_box, avoid, held, after, method,
         strategy, objective, direction, clearances, least_lean (degrees) and roughness (micrometres) as in the command,
         feedrate, spindle, rapid, compare; and name (that of its folder; the part's file unless given), verify,
         pictures, minutes, timeout (s) and memory (MB).  Parts and obstacles in mappings may be anything that
-        `toolaxis.load` takes, tools a Tool, machines a Machine.
+        `toolaxis.load` takes, tools a Tool, machines a Machine.  `after` names jobs before it, for earlier setups of
+        the same part.
     out : path
         Folder of the batch, made where there is none.
     workers : int, optional
@@ -136,19 +137,42 @@ class _Run:
             self.told(f"{self._ended} of {len(self._wanted)} jobs are finished already")
         self._report()
 
-    def tasks(self) -> Iterator[BatchTask]:
-        """The jobs that are not finished, each written down as begun when it is asked for."""
-        for job in self._wanted.values():
-            if self._rows[job.name].outcome != "not done":
+    def tasks(self) -> Iterator[BatchTask | None]:
+        """The jobs that are not finished, each written down as begun when it is asked for; None while all that are left
+        go on after one that is at work."""
+        left = [job for job in self._wanted.values() if self._rows[job.name].outcome == "not done"]
+        while left:
+            job = next(filter(self._may_begin, left), None)
+            if job is None:
+                yield None
                 continue
+            left.remove(job)
             try:
-                task = job.task()
+                task = self._complete_task(job)
             except InvalidInput as reason:
                 self._take(job, BatchAnswer("failed", "input", str(reason)))
                 continue
             self._folder.check()
             self._folder.started(job)
             yield task
+
+    def _may_begin(self, job: CheckedJob) -> bool:
+        """Whether all jobs have ended after which a job goes on."""
+        return all(self._rows[name].outcome != "not done" for name in job.after)
+
+    def _complete_task(self, job: CheckedJob) -> BatchTask:
+        """A task with the plans for the setups before it.
+
+        Raises
+        ------
+        InvalidInput
+            When one of them has no plan, or a file cannot be read any more.
+        """
+        task = job.task()
+        for name in job.after:
+            if self._rows[name].outcome == "failed":
+                raise InvalidInput(f"job {name}, after which this one goes on, has no plan: see to that one first")
+        return replace(task, earlier=tuple(map(self._folder.earlier_plan, job.after)))
 
     def carried_out(self, answers: Iterator[tuple[BatchTask, BatchAnswer] | None]) -> Batch:
         """The batch, once all its jobs have ended or the user has stopped it."""

@@ -14,6 +14,7 @@ from toolaxis.plan.plan import Plan
 from toolaxis.shape.face import Face
 from toolaxis.shape.part import Part
 from toolaxis.skin.join import join
+from toolaxis.strategies.strategy import Strategy
 
 Loops = tuple[NDArray[np.float64], ...]
 
@@ -25,6 +26,31 @@ _NOTHING = 1e-9
 _SHARE = 1e-3
 #: How far boxes and areas of faces may differ of parts that are the same one, in parts of the diagonal and the area.
 _SAME = 1e-6
+
+
+def check_after(strategy: Strategy, *, named: bool = False, divided: bool = False) -> None:
+    """Check that a plan for a later setup asks for nothing but what earlier plans left.
+
+    Parameters
+    ----------
+    strategy : Strategy
+    named : bool
+        Whether faces are named.
+    divided : bool
+        Whether sub-surfaces are given by hand.
+
+    Raises
+    ------
+    InvalidInput
+        When it asks for something else too.
+    """
+    if named:
+        raise InvalidInput("faces are named, and earlier setups too: leave one of both out")
+    if divided:
+        raise InvalidInput("sub-surfaces given by hand do not go with earlier setups: leave one of both out")
+    if strategy.in_layers:
+        raise InvalidInput(f"strategy {strategy.name!r} does not go with earlier setups, which leave pieces of "
+                           "faces: take another one")
 
 
 def join_as_before(part: Part, earlier: Sequence[Plan]) -> tuple[Part, tuple[int, ...]]:

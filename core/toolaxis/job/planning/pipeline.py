@@ -25,7 +25,7 @@ from toolaxis.job.inputs.spec import (
 from toolaxis.job.inputs.tool_library import ToolLibrary, ToolSource, load_library
 from toolaxis.job.planning.blade_pattern import Pattern, find_pattern
 from toolaxis.job.planning.comparison import compare_methods
-from toolaxis.job.planning.earlier_setups import join_as_before, leave_out_machined
+from toolaxis.job.planning.earlier_setups import check_after, join_as_before, leave_out_machined
 from toolaxis.job.planning.edit_origin import datum_of
 from toolaxis.job.planning.failures import fail_operation
 from toolaxis.job.planning.held_side import cut_face, cut_faces
@@ -361,7 +361,7 @@ def _join_faces(part: Part, request: _PlanRequest, progress: Progress) -> _Joine
     Blades are looked for where several tools plan a part of which no faces are named; else it is joined to skins then.
     """
     if request.after:
-        _check_after(request)
+        check_after(request.strategy, named=request.faces is not None, divided=bool(request.division))
         return _JoinedPart(*join_as_before(part, request.after), None)
     faces, pattern = request.faces, None
     if request.has_several_tools and faces is None:
@@ -415,17 +415,6 @@ def _check_held_side(given: Sequence[SubSurface], chosen: Strategy) -> None:
     if chosen.in_layers:
         raise InvalidInput(f"a clamped side does not go with strategy {chosen.name!r}: faces are cut where it begins; "
                            "leave one of both out")
-
-
-def _check_after(request: _PlanRequest) -> None:
-    """That a plan for a later setup asks for nothing but what earlier plans left."""
-    if request.faces is not None:
-        raise InvalidInput("faces are named, and earlier setups too: leave one of both out")
-    if request.division:
-        raise InvalidInput("sub-surfaces given by hand do not go with earlier setups: leave one of both out")
-    if request.strategy.in_layers:
-        raise InvalidInput(f"strategy {request.strategy.name!r} does not go with earlier setups, which leave pieces of "
-                           "faces: take another one")
 
 
 def _tell_apart(plan: Plan, faces: Sequence[Face], held: tuple[FaceShare, ...]) -> Plan:
