@@ -14,8 +14,8 @@ from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.job.inputs.spec import choose_faces, numbers_to_avoid
 from toolaxis.job.output.verify import verify_plan
 from toolaxis.plan.document import plan_from
-from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.plan import Plan
+from toolaxis.regions.open_places import list_open_places, what_closes
 from toolaxis.tolerances import Tolerance
 
 CLEAR = Tolerance().cutter_clearance

@@ -25,12 +25,12 @@ from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.job.planning.waiting import WaitingSurface, merge_waiting
 from toolaxis.machine.setup import Mounting
 from toolaxis.partition.partition import regions
-from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.orientation import Orientation
 from toolaxis.plan.plan import Plan
 from toolaxis.post.context import Options
 from toolaxis.progress import Progress
+from toolaxis.regions.open_places import list_open_places, what_closes
 from toolaxis.regions.reach_screen import ReachScreen
 from toolaxis.regions.scene import ReachScene
 from toolaxis.report.tables import open_table, plan_table, verdict_table
@@ -108,7 +108,9 @@ def test_what_stays_open_is_listed_with_what_would_close_it(planned: Plan) -> No
     assert place.label == "1.2" and place.area == pytest.approx(account.open + account.unreachable, rel=0.2)
     assert place.unreachable == pytest.approx(account.unreachable)
     assert place.point[1] < 1.5 and place.radius == pytest.approx(125, rel=0.1), "along the wall at y = 0"
-    assert "another setup" in what_closes(place, 1.5)
+    assert place.corner is not None and place.corner.beside == "2"
+    assert 2 * place.corner.radius == pytest.approx(1.5, abs=0.2), "half of a strip of 1.6, less the clearance of 0.1"
+    assert what_closes(place, 1.5).endswith("mm or less for half of it: it lies in the corner to face 2")
     made = open_table(planned)
     assert made is not None and list(made.columns[0].cells) == ["1.2"] and "1 places" not in str(made.title)
 

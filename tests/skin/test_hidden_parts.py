@@ -10,8 +10,8 @@ import pytest
 import toolaxis as ta
 from toolaxis.job.files.plan_folder import read_plan, stage_folder, write_plan
 from toolaxis.numeric import jit as _compiled
-from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.plan import Plan
+from toolaxis.regions.open_places import list_open_places, what_closes
 from toolaxis.report.tables import plan_table
 from toolaxis.report.warnings import warnings_of
 from toolaxis.shape.face import Face

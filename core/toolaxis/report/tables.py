@@ -9,9 +9,9 @@ from rich.table import Table
 
 from toolaxis.plan.baseline import Baseline, clock
 from toolaxis.plan.machine_document import rotary_of
-from toolaxis.plan.open_places import list_open_places, what_closes
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import INDEX_SECONDS, Option, Plan, PlanInputs, describe_feed, outcome_of
+from toolaxis.regions.open_places import list_open_places, what_closes
 from toolaxis.report.areas_aside import describe_held, describe_hidden, describe_machined_before, describe_not_begun
 from toolaxis.shape.stock import format_faces
 from toolaxis.verify.component_clearance import Clearance

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 from toolaxis.job.planning.parallel import abreast
 from toolaxis.job.planning.planner import PlanningJob
-from toolaxis.plan.open_places import LEAST, OpenFace, list_open_faces
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.progress import Progress
+from toolaxis.regions.open_places import LEAST, OpenFace, list_open_faces
 from toolaxis.regions.out_of_reach import OutOfReach, prove_out_of_reach
 from toolaxis.regions.scene import ReachScene
 from toolaxis.shape.face import Face

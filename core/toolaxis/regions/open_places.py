@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toolaxis.advice import LONGER_TOOL
+from toolaxis.feasibility.surroundings import group_surroundings
 from toolaxis.plan.operation import Operation
 from toolaxis.plan.plan import Plan
 from toolaxis.plan.unplanned_area import HIDDEN, UnplannedArea
 from toolaxis.plan.zone import AVOIDED
+from toolaxis.regions.inside_corner import InsideCorner, find_inside_corner
 from toolaxis.shape.face import Face
 from toolaxis.shape.half_space import HELD_SIDE
 from toolaxis.work import is_out_of_work
@@ -20,8 +22,12 @@ Array = NDArray[np.float64]
 LEAST = 0.01
 #: Cells each way at whose centres the curvature of a place is asked for.
 _CELLS = 12
+#: Cells each way from which a ball end is tried: their number is that of questions to each face beside it.
+_CELLS_FOR_BALLS = 6
 #: Share of a place from which on it counts as out of reach where that is proven.
 _MOSTLY = 0.5
+#: Diameter below which there are no ball ends, mm.
+_THINNEST = 0.1
 #: Curvature below which a place counts as not hollow, 1/mm.
 _FLAT = 1e-4
 
@@ -33,7 +39,7 @@ class OpenPlace(NamedTuple):
     reach of every tool of the plan;  point : (3,) array, mm, in the middle of it;  radius : float, least radius of its
     hollows, mm, infinite where it is nowhere hollow;  limited : bool, whether the limit of work ended the search there;
     avoided : tuple of str, labels of faces to be avoided that keep the cutter from it;  beneath : str, label of the
-    face under which it lies as their skin is seen.
+    face under which it lies as their skin is seen;  corner : InsideCorner or None, in which it lies.
     """
 
     label: str
@@ -44,6 +50,7 @@ class OpenPlace(NamedTuple):
     limited: bool
     avoided: tuple[str, ...] = ()
     beneath: str = ""
+    corner: InsideCorner | None = None
 
 
 class OpenFace(NamedTuple):
@@ -90,7 +97,7 @@ def list_open_places(plan: Plan) -> tuple[OpenPlace, ...]:
     operations = {op.number: op for op in plan.operations}
     left = [piece for piece in list_open_faces(plan) if piece.area >= LEAST]
     hidden = [area for area in plan.unplanned if area.why == HIDDEN and area.area >= LEAST]
-    found = [_place(operations[piece.operation], piece) for piece in left]
+    found = [_place(plan, operations[piece.operation], piece) for piece in left]
     found += [_place_beneath(area) for area in hidden]
     return tuple(sorted(found, key=lambda place: (-place.area, place.label)))
 
@@ -107,7 +114,7 @@ def _place_beneath(area: UnplannedArea) -> OpenPlace:
         beneath=area.beneath)
 
 
-def _place(op: Operation, piece: OpenFace) -> OpenPlace:
+def _place(plan: Plan, op: Operation, piece: OpenFace) -> OpenPlace:
     face = piece.face
     uv = face.places_on(_CELLS)
     points = face.evaluate(uv).point
@@ -118,7 +125,17 @@ def _place(op: Operation, piece: OpenFace) -> OpenPlace:
     limited = is_out_of_work(op.orientation.reasons)
     avoided = () if piece.zone is None else op.zones[piece.zone].avoided
     radius = 1 / hollow if hollow > _FLAT else np.inf
-    return OpenPlace(op.face.label, piece.area, proven, middle, radius, limited, avoided)
+    return OpenPlace(op.face.label, piece.area, proven, middle, radius, limited, avoided, corner=_corner_of(plan, face))
+
+
+def _corner_of(plan: Plan, face: Face) -> InsideCorner | None:
+    """The inside corner in which a piece of a face lies."""
+    inputs = plan.inputs
+    allowance = inputs.allowance_of(face)
+    groups = group_surroundings(face, inputs.tolerance, allowance, part=plan.part_around(face.number),
+                                obstacles=[own for body in plan.obstacles for own in body.faces])
+    smallest = min(tool.corner_radius for tool in plan.tools)
+    return find_inside_corner(face, face.places_on(_CELLS_FOR_BALLS), groups, smallest, allowance)
 
 
 def what_closes(place: OpenPlace, smallest: float) -> str:
@@ -138,8 +155,20 @@ def what_closes(place: OpenPlace, smallest: float) -> str:
         return f"nothing: it lies beside face {', '.join(place.avoided)}, {AVOIDED}"
     if place.radius < smallest:
         return f"a ball end of {2 * place.radius:.2g} mm or less"
+    if place.corner is not None:
+        return _what_closes_corner(place.corner)
     if place.unreachable >= _MOSTLY * place.area:
         return f"{LONGER_TOOL}, or another setup: no tool here reaches it with any axis"
     if place.limited:
         return "more work: raise --limit"
     return f"{LONGER_TOOL}, or another setup: no axis that was tried reaches enough of it"
+
+
+def _what_closes_corner(corner: InsideCorner) -> str:
+    if corner.beside == HELD_SIDE:
+        return "another setup: it lies beside the clamped side"
+    diameter = 2 * corner.radius
+    if diameter < _THINNEST:
+        return (f"a smaller clearance of the cutter (--clearances): half of it lies within {corner.clearance:g} mm of "
+                f"face {corner.beside}")
+    return f"a ball end of {diameter:.2g} mm or less for half of it: it lies in the corner to face {corner.beside}"
