@@ -8,10 +8,11 @@ from toolaxis.errors import InvalidInput
 from toolaxis.path.links import CuttingMove, Linking, link
 from toolaxis.path.parametrization import Chart, Cut
 from toolaxis.path.pass_layout import Layout
+from toolaxis.path.stroke_order import ZIGZAG, order_strokes
 
 Array = NDArray[np.float64]
 
-DIRECTIONS = ("zigzag", "climb", "conventional")
+DIRECTIONS = (ZIGZAG, "climb", "conventional")
 
 
 def climbing(chart: Chart, cut: Cut) -> int:
@@ -62,18 +63,17 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     """
     if direction not in DIRECTIONS:
         raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
-    strokes = [one.move for one in layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)]
-    return link(_order_moves(strokes, layout, direction), layout.cut.axis, linking or Linking(_crossing(layout, box)))
+    moves = [one.move for one in layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)]
+    return link(_order_moves(moves, layout, direction), layout.cut.axis, linking or Linking(_crossing(layout, box)))
 
 
-def _order_moves(strokes: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
-    climb = climbing(layout.chart, layout.cut)
-    passes: list[list[CuttingMove]] = []
-    for i in np.unique(layout.owner):
-        members = [strokes[j] for j in np.flatnonzero(layout.owner == i)]
-        sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
-        passes.append(members if sense > 0 else [_back(s) for s in reversed(members)])
-    return passes
+def _order_moves(moves: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
+    sense = None
+    if direction != ZIGZAG:
+        climb = climbing(layout.chart, layout.cut)
+        sense = climb if direction == "climb" else -climb
+    passes = order_strokes(moves, layout.pieces, layout.owner, sense)
+    return [[moves[one.number] if one.sense > 0 else _back(moves[one.number]) for one in some] for some in passes]
 
 
 def _back(stroke: CuttingMove) -> CuttingMove:
