@@ -244,6 +244,10 @@
    <translation>Platz des Werkzeugs im Magazin; 0: keiner</translation>
   </message>
   <message>
+   <source>Plan of the setup before this one; nothing: this is the first setup</source>
+   <translation>Plan der Aufspannung vor dieser; leer: dies ist die erste Aufspannung</translation>
+  </message>
+  <message>
    <source>Plan one blade of a part with blades and copy it to the others</source>
    <translation>Eine Schaufel eines Teils mit Schaufeln planen und auf die anderen übertragen</translation>
   </message>

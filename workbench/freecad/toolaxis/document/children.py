@@ -147,7 +147,8 @@ class DeletionObserver:
     going : set of str
         Names of the operations and plans that are just being deleted, with what belongs to them.
     followers : list
-        What is told of operations: `deleted(thing, going)` before one of them, or a turned copy of one, is deleted.
+        What is told of operations: `deleted(thing, going)` before one of them, a turned copy of one, or a whole plan is
+        deleted.
     """
 
     def __init__(self):
@@ -158,7 +159,7 @@ class DeletionObserver:
         document = thing.Document
         if document is None or document.Transacting or document.Restoring:
             return
-        if is_operation(thing) or "Turn" in thing.PropertiesList:
+        if is_operation(thing) or is_plan(thing) or "Turn" in thing.PropertiesList:
             for follower in self.followers:
                 follower.deleted(thing, self.going)
         if is_operation(thing):

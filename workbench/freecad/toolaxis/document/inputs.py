@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import radians
 
 from freecad.toolaxis.document.children import frame_of
+from freecad.toolaxis.document.earlier_setups import check_earlier_setup, faces_of_setup
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.machine_limits import PREFIX
 from freecad.toolaxis.document.placement import matrix_of
@@ -56,7 +57,7 @@ class JobInputs:
     Attributes
     ----------
     faces : tuple of (object, "Face7")
-        What is machined.
+        What is machined: the faces of the earlier setup where there is one.
     tool : str
         Short form of the cutter.
     shank, holder : tuple of (radius, z)
@@ -113,6 +114,9 @@ class JobInputs:
     stock_box : str
         Margins of the box that the part is cut from, "2" or "1,1,1,1,0,2" for -x, +x, -y, +y, -z and +z, mm; empty
         where the CAM job makes it.
+    after : App.DocumentObject or None
+        The setup before this one, see `freecad.toolaxis.document.earlier_setups.is_setup`: only what it and those
+        before it leave is machined.
     """
 
     faces: tuple = ()
@@ -152,6 +156,7 @@ class JobInputs:
     held: str = ""
     origin: str = ""
     stock_box: str = ""
+    after: object = None
 
     def __post_init__(self) -> None:
         for name in ("shank", "holder"):
@@ -159,6 +164,8 @@ class JobInputs:
             object.__setattr__(self, name, rows)
         for name in ("faces", "obstacles", "pieces", "rack"):
             object.__setattr__(self, name, tuple(getattr(self, name) or ()))
+        if self.after is not None:
+            object.__setattr__(self, "faces", faces_of_setup(self.after))
         if not keeps_roughness(self.strategy):
             object.__setattr__(self, "roughness", ROUGHNESS)
 
@@ -275,6 +282,7 @@ class JobInputs:
             raise InvalidInput("faces to avoid and allowances on faces are numbered in one part and several are "
                                "chosen: choose faces of one part")
         self.check_one_part()
+        check_earlier_setup(self)
 
     def check_one_part(self):
         """Check that an origin and a stock of their own are for one part.
@@ -329,7 +337,7 @@ def inputs_of(thing):
                      thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern,
                      tuple(thing.Rack), thing.MostTools or None, thing.ToolNumber, thing.ToolTitle, thing.Stock.Value,
                      thing.LeastLean.Value, thing.GreatestStepOver.Value, thing.AllowanceOn, thing.Lead.Value,
-                     thing.AvoidFaces, thing.Held, thing.Origin, thing.StockBox)
+                     thing.AvoidFaces, thing.Held, thing.Origin, thing.StockBox, thing.After)
 
 
 def flute_of(tool):

@@ -4,6 +4,7 @@ import json
 from dataclasses import asdict, replace
 
 import FreeCAD
+from freecad.toolaxis.document.earlier_setups import DELETED, later_setups
 from freecad.toolaxis.document.inputs import inputs_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
 from freecad.toolaxis.document.operation import INPUTS, compare, set_inputs, watch
@@ -77,7 +78,12 @@ class _Plans:
     """Tells whole plans what becomes of their operations."""
 
     def deleted(self, thing, going):
-        """Mark the plan of an operation, or of a turned copy, that is deleted by itself."""
+        """Mark what follows a setup that is deleted, and the plan of an operation, or of a turned copy, that is deleted
+        by itself.
+        """
+        for later in later_setups(thing.Document):
+            if later.After == thing:
+                assign(later, StaleReasons=[DELETED], Stale=True)
         plan, source = plan_of(thing), getattr(thing, "LinkedObject", None)
         if plan is not None and plan.Name not in going and (source is None or source.Name not in going):
             note_deleted(plan, thing)
@@ -86,6 +92,14 @@ class _Plans:
         """Compare the plans of a document after their operations."""
         for thing in filter(is_plan, document.Objects):
             compare(thing, why_stale)
+
+    def recomputed(self, document):
+        """Compare the plans of later setups, which FreeCAD does not recompute with those that they follow."""
+        for thing in later_setups(document):
+            touched = "Touched" in thing.State
+            compare(thing, why_stale)
+            if not touched:
+                thing.purgeTouched()
 
 
 _PLANS = _Plans()
@@ -191,18 +205,24 @@ def keep_plan(thing, inputs, plan):
 
 
 def _keep_account(thing, plan):
-    """Write what several tools come to into a whole plan; nothing where there is one."""
+    """Write what is in no operation into a whole plan, and what several tools come to; nothing where there is one."""
+    thing.InNoOperation = _text_of_areas(plan)
     if len(plan.tools) < 2:
-        assign(thing, Account="", InNoOperation="", ToolsUsed=[])
+        assign(thing, Account="", ToolsUsed=[])
         return
     found = account_of(plan)
     thing.Account = account_text(found)
-    thing.InNoOperation = json.dumps({"unplanned": [{**one._asdict(), "point": list(one.point)}
-                                                    for one in plan.unplanned],
-                                      "held": [one._asdict() for one in plan.held]})
     assign(thing, FaceArea=found.area, Machined=found.machined, ProvenOutOfReach=found.unreachable, Open=found.open,
            NotBegun=found.not_begun,
            ToolsUsed=[f"T{one.number} {one.name}: {one.operations}, {clock(one.seconds)}" for one in found.tools])
+
+
+def _text_of_areas(plan):
+    """What of the faces of a plan is in no operation, and the faces that it has joined."""
+    rows = {name: [one._asdict() for one in getattr(plan, name)] for name in ("unplanned", "held", "machined_before")}
+    rows["unplanned"] = [{**one, "point": list(one["point"])} for one in rows["unplanned"]]
+    rows["joined"] = [list(face.numbers) for face in plan.part.faces if face.members]
+    return json.dumps(rows)
 
 
 def keep_figures(thing, plan):

@@ -3,6 +3,7 @@
 import json
 
 from freecad.toolaxis.document.children import missing
+from freecad.toolaxis.document.earlier_setups import changes_since, fingerprint_of
 from freecad.toolaxis.document.face_identity import what_became
 from freecad.toolaxis.document.inputs import FORMER_TOLERANCE, inputs_of
 from freecad.toolaxis.document.shape_cache import known_of
@@ -19,6 +20,8 @@ _USUAL = {"regions": None, "orientations": None, "method": "sphere", "strategy":
           "flute_length": 0.0, "passes": ISO, "rack": (), "most_tools": None, "tool_number": 0, "tool_title": "",
           "stock": 0.0, "least_lean": 0.0, "greatest_step_over": 0.0, "allowance_on": "", "lead": 0.0,
           "avoid_faces": "", "held": "", "origin": "", "stock_box": ""}
+#: Inputs of which changes are told in sentences of their own.
+_APART = ("faces", "obstacles", "after")
 
 
 def signature(things, obstacles=(), turned=False):
@@ -116,6 +119,8 @@ def digest(inputs):
     words |= {name: str(getattr(inputs, name)) for name, usual in _USUAL.items() if getattr(inputs, name) != usual}
     words["faces"] = [[thing.Name, name] for thing, name in inputs.faces]
     words["obstacles"] = [thing.Name for thing in inputs.obstacles]
+    if inputs.after is not None:
+        words["after"] = [inputs.after.Name, fingerprint_of(inputs.after)]
     return json.dumps(words, sort_keys=True)
 
 
@@ -185,7 +190,10 @@ def changed_inputs(planned, inputs):
     names = dict.fromkeys([part for part, _ in planned["faces"]] + planned["obstacles"])
     gone = [name for name in names if document.getObject(name) is None]
     reasons = [f"{', '.join(gone)}: deleted"] if gone else []
-    if sorted(face for face in planned["faces"] if face[0] not in gone) != sorted(now["faces"]):
+    of_earlier = changes_since(planned.get("after"), inputs.after, document)
+    reasons += of_earlier
+    kept = [face for face in planned["faces"] if face[0] not in gone]
+    if not of_earlier and sorted(kept) != sorted(now["faces"]):
         reasons.append("the faces were changed")
     if sorted(name for name in planned["obstacles"] if name not in gone) != sorted(now["obstacles"]):
         reasons.append("the bodies to avoid were changed")
@@ -193,7 +201,7 @@ def changed_inputs(planned, inputs):
 
 
 def _changes(planned, now):
-    names = [name for name in dict.fromkeys((*planned, *now)) if name not in ("faces", "obstacles")]
+    names = [name for name in dict.fromkeys((*planned, *now)) if name not in _APART]
     return [f"{name} was changed" for name in names if planned.get(name) != now.get(name)]
 
 

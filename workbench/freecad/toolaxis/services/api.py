@@ -11,8 +11,16 @@ from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.staleness import standing as what_stands
 from freecad.toolaxis.document.staleness import why_stale
 from freecad.toolaxis.document.strategies import asked_of, refuse_in_vain
-from freecad.toolaxis.services.arguments import document_of, faces_of, fields_of, operation_of, progress_of
+from freecad.toolaxis.services.arguments import (
+    check_faces_after,
+    document_of,
+    faces_of,
+    fields_of,
+    operation_of,
+    progress_of,
+)
 from freecad.toolaxis.services.defaults import defaults
+from freecad.toolaxis.services.earlier_plans import earlier_plans_task
 from freecad.toolaxis.services.edit_sub_surfaces import merged
 from freecad.toolaxis.services.edit_sub_surfaces import split as cut
 from freecad.toolaxis.services.tools import tool_fields
@@ -41,6 +49,7 @@ def task(inputs):
     tools, job = inputs.tools(), inputs.job()
     source = ShapesRead.of(inputs)
     division = source.division(inputs)
+    read_earlier = earlier_plans_task(inputs)
 
     def compute(progress):
         import toolaxis as ta
@@ -55,7 +64,7 @@ def task(inputs):
                        passes=inputs.passes, obstacles=list(bodies) or None, datum=source.datum,
                        most_tools=inputs.most_tools, stock=job.stock, greatest_step_over=job.greatest_step_over,
                        allowance_on=dict(job.allowance_on), lead=job.lead, avoid=job.avoid, held=job.held,
-                       origin=source.origin, stock_box=job.stock_box,
+                       origin=source.origin, stock_box=job.stock_box, after=read_earlier(progress),
                        progress=progress, **rates, **asked_of(inputs))
         refuse_in_vain(made)
         return made
@@ -64,7 +73,11 @@ def task(inputs):
 
 
 def _faces_asked(inputs, source, part):
-    """The faces as the library takes them: nothing for a whole part, of which a rack machines blades or skins."""
+    """The faces as the library takes them: nothing for a whole part, of which a rack machines blades or skins, and
+    after an earlier setup, which has its own.
+    """
+    if inputs.after is not None:
+        return None
     whole = source.complete(part)
     if inputs.rack and whole and not inputs.blades:
         return "skins"
@@ -120,7 +133,9 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
     progress : toolaxis.progress.Progress, optional
     **given
         Further fields of `JobInputs`, `rack`, `regions`, `orientations`, `method` and `strategy` among them; what is
-        not given comes from the part.  With a `rack`, such as "general-rack", no `tool` is needed.
+        not given comes from the part.  With a `rack`, such as "general-rack", no `tool` is needed.  `after`, the plan
+        of an earlier setup or one of its operations, has only what is left of its faces planned; `faces` is then the
+        part.
 
     Returns
     -------
@@ -135,7 +150,10 @@ def plan(document, faces, tool=None, scallop=None, *, progress=None, **given):
     document, progress = document_of(document), progress_of(progress)
     fields = fields_of(document, {"scallop": scallop, **given})
     fields = (tool_fields(tool) if tool is not None else {}) | fields
-    inputs = replace(defaults(document, faces_of(document, faces)), **fields)
+    chosen = faces_of(document, faces)
+    if "after" in fields:
+        check_faces_after(chosen, fields["after"])
+    inputs = replace(defaults(document, chosen), **fields)
     return apply(document, inputs, task(inputs)(progress))
 
 
@@ -219,7 +237,8 @@ def split(operation, line=None, parameter="", at=None, progress=None):
 
 
 def planned_with(operation):
-    """What is planned again for an operation: itself, or its whole plan where blades or tools were planned together.
+    """What is planned again for an operation: itself, or its whole plan where blades or tools were planned together,
+    or an earlier setup machines something of its face.
 
     Parameters
     ----------
@@ -227,7 +246,8 @@ def planned_with(operation):
         An operation or a whole plan.
     """
     above = None if is_plan(operation) else plan_of(operation)
-    together = above is not None and (above.BladesFound not in ("", "null") or bool(above.Rack))
+    together = above is not None and (above.BladesFound not in ("", "null") or bool(above.Rack) or
+                                      above.After is not None)
     return above if together else operation
 
 

@@ -5,7 +5,8 @@ from math import isfinite
 from pathlib import Path
 
 import FreeCAD
-from freecad.toolaxis.document.kinds import is_operation, is_plan
+from freecad.toolaxis.document.earlier_setups import faces_of_setup
+from freecad.toolaxis.document.kinds import is_operation, is_plan, plan_of
 from freecad.toolaxis.document.read_shapes import sculptured
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES
 from freecad.toolaxis.document.work_origin import origin_from_vertex
@@ -27,7 +28,7 @@ _TEXTS = {"limits": "\"cone:0,0,1,60\"", "objective": "\"length\"", "direction":
 _COUNTS, _SWITCHES = ("regions", "orientations", "most_tools"), ("blades", "compare")
 _OUTLINES = ("shank", "holder")
 _LISTS = (*_OUTLINES, "obstacles")
-_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES, "rack", "origin", "stock_box")
+_NAMES = (*_NUMBERS, *_TEXTS, *_LISTS, *_COUNTS, *_SWITCHES, "rack", "origin", "stock_box", "after")
 
 
 def _refusal(text):
@@ -229,6 +230,8 @@ def fields_of(document, given):
             found[name] = _origin(document, value)
         elif name == "stock_box":
             found[name] = _margins(value)
+        elif name == "after":
+            found[name] = _setup(document, value)
         else:
             found[name] = _things(document, name, value)
     if "roughness" in found:
@@ -328,6 +331,44 @@ def _margins(value):
     from toolaxis.shape.work_origin import format_margins, parse_margins
 
     return format_margins(parse_margins(value))
+
+
+def _setup(document, value):
+    """An earlier setup: a whole plan, or the one that an operation belongs to."""
+    thing = _find_object(document, "after", value) if isinstance(value, str) else value
+    if not isinstance(thing, FreeCAD.DocumentObject):
+        raise _refusal(f"after is {_value_text(value)}: give the plan of the earlier setup, or one of its operations")
+    thing = _own(document, "after", thing)
+    if is_operation(thing):
+        return plan_of(thing) or thing
+    if not is_plan(thing):
+        raise _refusal(f"after is {thing.Label}, which is none of Tool Axis: give the plan of the earlier setup, or "
+                       "one of its operations")
+    return thing
+
+
+def check_faces_after(faces, setup):
+    """Check that the faces that are named are those of the earlier setup, or those of its part.
+
+    Parameters
+    ----------
+    faces : sequence of (object, "Face7")
+        As `faces_of` gives them.
+    setup : App.DocumentObject
+
+    Raises
+    ------
+    InvalidInput
+        When they are others.
+    """
+    asked = faces_of_setup(setup)
+    parts = {thing.Name for thing, _ in asked}
+    given = {thing.Name for thing, _ in faces}
+    if given != parts:
+        raise _refusal(f"the earlier setup {setup.Label} is one of another part: plan all setups of one part")
+    is_whole = len(parts) == 1 and set(faces) == {(faces[0][0], name) for name in sculptured(faces[0][0])}
+    if not is_whole and set(faces) != set(asked):
+        raise _refusal("faces are named, and an earlier setup too, which has its own: give the part alone")
 
 
 def _things(document, name, value):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
 from itertools import count
+from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from freecad.toolaxis.document.kinds import operations_in, plan_of
 from freecad.toolaxis.document.machine import angles_kept, nearest
 from freecad.toolaxis.document.machine_angles import in_order
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
+from freecad.toolaxis.document.plan_group import why_stale as why_plan_stale
 from freecad.toolaxis.document.read_operation import OperationRecord
 from freecad.toolaxis.document.read_shapes import ShapesRead
 from freecad.toolaxis.document.stale_label import plain_label
@@ -182,12 +184,15 @@ def plan_task(operations):
             copy = standing.turned(link.Placement, int(link.Face.removeprefix("Face")))
             copy = replace(copy, details=_number_details(copy.details, before))
             rows.append(_PlannedRow(copy, tools[place], (), {}))
-    job, aside = replace(together.job(), origin=source.origin), _areas_in_no_operation(operations)
+    job = replace(together.job(), origin=source.origin)
+    words = _in_no_operation(operations)
+    aside = _areas_in_no_operation(words)
 
     def compute(progress):
         from toolaxis.plan.plan import Plan
 
         part, bodies = source.prepared(job, progress)
+        part = _join_again(part, words.get("joined", ()))
         for row in rows:
             part = row.standing.joined(part)
         if job.stock > 0:
@@ -258,18 +263,37 @@ def _with_rests(made, rows):
     return found
 
 
-def _areas_in_no_operation(operations):
-    """What of the faces is in no operation, as a plan's fields; nothing unless all of one whole plan is written."""
-    from toolaxis.plan.face_share import FaceShare
-    from toolaxis.plan.unplanned_area import UnplannedArea
-
+def _in_no_operation(operations):
+    """What a document keeps of areas in no operation, by names; nothing unless all of one whole plan is written."""
     above = plan_of(operations[0])
     whole = above is not None and {one.Name for one in operations_in(above)} == {one.Name for one in operations}
     if not whole or not above.InNoOperation:
         return {}
     words = json.loads(above.InNoOperation)
-    return {"unplanned": tuple(UnplannedArea(**{**one, "point": tuple(one["point"])}) for one in words["unplanned"]),
-            "held": tuple(FaceShare(**one) for one in words["held"])}
+    if words.get("machined_before"):
+        _check_up_to_date(above, why_plan_stale(above))
+    return words
+
+
+def _areas_in_no_operation(words):
+    """What of the faces is in no operation, as a plan's fields."""
+    from toolaxis.plan.face_share import FaceShare
+    from toolaxis.plan.unplanned_area import UnplannedArea
+
+    if not words:
+        return {}
+    unplanned = tuple(UnplannedArea(**{**one, "point": tuple(one["point"])}) for one in words["unplanned"])
+    shares = {name: tuple(FaceShare(**one) for one in words.get(name, ())) for name in ("held", "machined_before")}
+    return {"unplanned": unplanned, **shares}
+
+
+def _join_again(part, joined):
+    """A part with the faces joined that a plan has joined, some of which may lie in no operation."""
+    from toolaxis.skin.join import join
+
+    for numbers in joined:
+        part = join(part, numbers, inf, inf)
+    return part
 
 
 def _outcome(made, tools, aside):
@@ -285,13 +309,17 @@ def _outcome(made, tools, aside):
 
 def _inputs(operation):
     """The inputs of an operation that holds."""
+    _check_up_to_date(operation, why_stale(operation))
+    return inputs_of(operation)
+
+
+def _check_up_to_date(thing, reasons):
+    """Refuse what does not hold any more."""
     from toolaxis.errors import InvalidInput
 
-    reasons = why_stale(operation)
     if reasons:
-        name = plain_label(operation)
+        name = plain_label(thing)
         raise InvalidInput(f"'{name}' is out of date ({'; '.join(reasons)}): recompute it before it is written")
-    return inputs_of(operation)
 
 
 def _together(operations, inputs):

@@ -82,6 +82,8 @@ def plan_line(inputs):
               if getattr(inputs, name) != getattr(usual, name)}
     if inputs.obstacles:
         given["obstacles"] = [thing.Name for thing in inputs.obstacles]
+    if inputs.after is not None:
+        given["after"] = inputs.after.Name
     words = ", ".join(f"{name}={value!r}" for name, value in given.items())
     tool = "" if inputs.rack else f"{inputs.tool!r}, "
     return f"freecad.toolaxis.plan({_DOCUMENT}, {faces!r}, {tool}{words})"
@@ -99,6 +101,8 @@ def again_lines(operation, before, inputs):
     thing = thing_of(operation)
     lines = [f"{thing}.{held} = {getattr(inputs, name)!r}" for name, held in _HELD.items()
              if getattr(inputs, name) != getattr(before, name)]
+    if inputs.after != before.after:
+        lines.append(f"{thing}.After = {None if inputs.after is None else thing_of(inputs.after)}")
     if inputs.rack != before.rack:
         lines.append(f"{thing}.Rack = {list(inputs.rack)!r}")
     if inputs.most_tools != before.most_tools:

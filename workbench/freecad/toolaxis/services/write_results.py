@@ -107,7 +107,7 @@ def _alone(inputs, owner, op):
     known = {one.Name for one in inputs.obstacles}
     own = inputs.with_tool(op.tool) if inputs.rack else inputs
     return replace(own, faces=((thing, name),), regions=None, orientations=None, compare=False, pieces=(),
-                   obstacles=(*inputs.obstacles, *(one for one in others if one.Name not in known)))
+                   obstacles=(*inputs.obstacles, *(one for one in others if one.Name not in known)), after=None)
 
 
 def _lock(operation, inputs, key):
@@ -131,7 +131,8 @@ def _place_for(document, inputs, plan, replaces):
         first = plan.operations[0]
         above = [thing for thing in replaces.InList if thing.hasExtension("App::GroupExtension")]
         return (above[0] if above else _new_group(document)), {_key(first, owners_of(inputs, plan)[0]): replaces}
-    if len(plan.operations) > 1 or inputs.divides or inputs.rack:
+    tells_more = plan.held or plan.unplanned or inputs.after is not None
+    if len(plan.operations) > 1 or inputs.divides or inputs.rack or tells_more:
         return _new_plan(document), {}
     return _new_group(document), {}
 
