@@ -510,6 +510,10 @@
    <translation>Bitte einen Ordner wählen.</translation>
   </message>
   <message>
+   <source>Clamped in this setup: {}.</source>
+   <translation>In dieser Aufspannung gespannt: {}.</translation>
+  </message>
+  <message>
    <source>Click a point: the plan is computed again with that many orientations.</source>
    <translation>Ein Klick auf einen Punkt: der Plan wird mit so vielen Orientierungen neu berechnet.</translation>
   </message>
@@ -680,6 +684,10 @@
   <message>
    <source>Machined</source>
    <translation>Bearbeitet</translation>
+  </message>
+  <message>
+   <source>Machined in earlier setups: {}.</source>
+   <translation>In früheren Aufspannungen bearbeitet: {}.</translation>
   </message>
   <message>
    <source>Machined within {}</source>
@@ -1006,6 +1014,10 @@
    <translation>Das Dokument wurde nicht verändert. Bitte melden Sie den Fehler mit den kopierten Einzelheiten und, wenn möglich, dem Teil.</translation>
   </message>
   <message>
+   <source>The earlier setup was deleted: choose another one, or none</source>
+   <translation>Die frühere Aufspannung wurde gelöscht: eine andere wählen, oder keine</translation>
+  </message>
+  <message>
    <source>The machine is not shown: {}</source>
    <translation>Die Maschine wird nicht gezeigt: {}</translation>
   </message>
@@ -1290,6 +1302,10 @@
    <translation>kein Eckpunkt</translation>
   </message>
   <message>
+   <source>none</source>
+   <translation>keine</translation>
+  </message>
+  <message>
    <source>none found</source>
    <translation>keine gefunden</translation>
   </message>
@@ -1472,6 +1488,10 @@
   <message>
    <source>{} of {} sub-surfaces</source>
    <translation>{} von {} Teilflächen</translation>
+  </message>
+  <message>
+   <source>{} of {}, as in the earlier setup</source>
+   <translation>{} von {}, wie in der früheren Aufspannung</translation>
   </message>
   <message>
    <source>{} of {}: cutting {}, non-cutting {}</source>
@@ -1986,6 +2006,10 @@ Alle außer der ersten brauchen feste Achsen.</translation>
    <translation>Aufteilung</translation>
   </message>
   <message>
+   <source>Earlier setup</source>
+   <translation>Frühere Aufspannung</translation>
+  </message>
+  <message>
    <source>Faces</source>
    <translation>Flächen</translation>
   </message>
@@ -2190,6 +2214,10 @@ Alle außer der ersten brauchen feste Achsen.</translation>
    <translation>Nummern von Flächen des Teils, die kein Werkzeug berühren darf.</translation>
   </message>
   <message>
+   <source>OK and plan the next setup</source>
+   <translation>OK und nächste Aufspannung planen</translation>
+  </message>
+  <message>
    <source>One tool, or a rack to choose from: large tools begin, smaller ones finish what they leave.</source>
    <translation>Ein Werkzeug, oder ein Magazin zur Auswahl: Große beginnen, kleinere bearbeiten, was sie übrig lassen.</translation>
   </message>
@@ -2216,6 +2244,10 @@ Alle außer der ersten brauchen feste Achsen.</translation>
   <message>
    <source>Pictures...</source>
    <translation>Bilder...</translation>
+  </message>
+  <message>
+   <source>Plan of the setup before this one. Only what it leaves of its faces is machined: what was clamped there and what stayed open.</source>
+   <translation>Plan der Aufspannung vor dieser. Nur was sie von ihren Flächen übrig lässt, wird bearbeitet: was dort gespannt war und was offen blieb.</translation>
   </message>
   <message>
    <source>Plan one blade, copy to others</source>
@@ -2256,6 +2288,10 @@ Alle außer der ersten brauchen feste Achsen.</translation>
   <message>
    <source>Point</source>
    <translation>Punkt</translation>
+  </message>
+  <message>
+   <source>Puts this plan into the document and plans the next setup: only what this one leaves is machined there.</source>
+   <translation>Übernimmt diesen Plan ins Dokument und plant die nächste Aufspannung: dort wird nur bearbeitet, was diese übrig lässt.</translation>
   </message>
   <message>
    <source>Quantity that the choice of the tool axis minimises.</source>

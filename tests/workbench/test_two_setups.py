@@ -7,6 +7,7 @@ import pytest
 from freecad.toolaxis.document.earlier_setups import setups_to_follow, setups_up_to
 from freecad.toolaxis.document.inputs import JobInputs, inputs_of
 from freecad.toolaxis.document.kinds import is_plan, operations_in, plan_of
+from freecad.toolaxis.document.plan_account import account_from
 from freecad.toolaxis.services import api
 from freecad.toolaxis.services.export import export
 from freecad.toolaxis.services.macros import again_lines, plan_line
@@ -209,3 +210,36 @@ def test_other_faces_and_other_parts_are_refused(kept, whole_parts):
 def test_what_is_given_is_one_value(kept):
     (thing, name), first, _ = kept
     assert JobInputs(((thing, "Face99"),), after=first).faces == ((thing, name),)
+
+
+def test_a_skin_that_is_clamped_as_a_whole_is_one_skin_in_the_next_setup(document, whole_parts, tmp_path):
+    """With a rack; found: nothing in the document told of skins that lie in no operation."""
+    rack = tmp_path / "rack.toml"
+    rack.write_text(whole_parts.RACK, encoding="utf-8")
+    thing = whole_parts.three_patches(document)
+    asked = {"rack": str(rack), "scallop": 0.3}
+    first = plan_of(api.plan(document, thing, held="x<34", **asked)[0])
+    one, told = exported(first, tmp_path / "one")
+    assert (1, 2) in [face.numbers for face in one.part.faces]
+    assert {share["face"] for share in told["held"] if share["whole"]} == {1}
+    made = api.plan(document, thing, held="x>38", after=first, **asked)
+    second = plan_of(made[0])
+    assert {tuple(json.loads(one.Details)["members"]) for one in made if one.Motions} == {(1, 2)}
+    two, words = exported(second, tmp_path / "two")
+    assert account_from(second.Account).machined_before == pytest.approx(one.account.machined, rel=1e-3)
+    assert sum(row["area"] for row in words["machined_before"]) == pytest.approx(one.account.machined, rel=1e-3)
+    for plan in (one, two):
+        verdict = ta.verify(plan)
+        assert verdict.passed, verdict.reasons
+
+
+def test_a_copy_leaves_the_earlier_setup_alone(setups):
+    (thing, _), first, second = setups
+    document = thing.Document
+    before = [one.Name for one in operations_in(first)]
+    document.copyObject(second, True)
+    (copied,) = [one for one in document.Objects if is_plan(one) and one not in (first, second)]
+    document.recompute()
+    assert copied.After == first and copied.Stale, "what is in it belongs to other operations"
+    assert not second.Stale and not first.Stale
+    assert [one.Name for one in operations_in(first)] == before

@@ -65,6 +65,17 @@ def grooved(document, name="Grooved"):
                                                 for y in (0, 13, 26, 40)] for x in range(0, 61, 2)]), name)
 
 
+def three_patches(document, name="Patches"):
+    """Two patches that continue each other smoothly, and a third one beside them; a sheet."""
+    bounds = (0, 16), (16, 32), (40, 60)
+    faces = [interpolated([[Vector(x, y, 0.05 * x + 0.4 * sin(y / 5)) for y in range(0, 17, 4)]
+                           for x in range(low, high + 1, 4)]) for low, high in bounds]
+    thing = document.addObject("Part::Feature", name)
+    thing.Shape = FreecadPart.Compound(faces)
+    document.recompute()
+    return thing
+
+
 def wheel(document, count=3, name="Wheel"):
     """Thin blades with two sculptured sides around a cylinder."""
     faces = [face for face in FreecadPart.makeCylinder(12, 16, Vector(0, 0, -8)).Faces

@@ -93,12 +93,14 @@ def setups_to_follow(document, part=None, plan=None):
 
 
 def fingerprint_of(setup):
-    """A text that changes with what a setup machines and with what it was planned for.
+    """A text that changes with what a setup machines and with what it was planned for; empty without a setup.
 
     Parameters
     ----------
-    setup : App.DocumentObject
+    setup : App.DocumentObject or None
     """
+    if setup is None:
+        return ""
     words = [setup.PlannedWith]
     for one in operations_of(setup):
         words += [one.PlannedWith, one.Details, str(bool(one.Motions))]

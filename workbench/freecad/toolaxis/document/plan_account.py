@@ -48,6 +48,8 @@ class PlanAccount:
         Of all operations, and different ones; 0 in documents of before.
     step_over : float
         Mean distance of passes, mm.
+    clamped, machined_before : float
+        mm^2 of the faces that are not asked for: as they lie in the clamped side, or earlier setups machine them.
     """
 
     area: float
@@ -61,6 +63,8 @@ class PlanAccount:
     passes: int = 0
     axes: int = 0
     step_over: float = 0.0
+    clamped: float = 0.0
+    machined_before: float = 0.0
 
     @property
     def between(self):
@@ -85,7 +89,8 @@ def account_of(plan):
                                   float(sum(op.seconds(rates.feedrate, rates.rapid) for op in done))))
     return PlanAccount(found.area, found.machined, found.unreachable, found.open, found.not_begun, float(plan.seconds),
                        tuple(rows), len(plan.tools), sum(op.orientation.passes for op in plan.operations if op.done),
-                       int(plan.orientations), mean_step_over(plan))
+                       int(plan.orientations), mean_step_over(plan), float(sum(one.area for one in plan.held)),
+                       float(sum(one.area for one in plan.machined_before)))
 
 
 def mean_step_over(plan):

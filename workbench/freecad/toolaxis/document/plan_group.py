@@ -200,13 +200,13 @@ def keep_plan(thing, inputs, plan):
     assign(thing, Outcome=plan.outcome, Warnings=list(plan.part.warnings), SubSurfaces=len(plan.operations),
            DifferentAxes=plan.orientations, CuttingLength=float(plan.length), Travel=float(plan.travel),
            MachiningTime=float(plan.seconds), Stale=False, StaleReasons=[])
+    thing.InNoOperation = _text_of_areas(plan, len(inputs.things) == 1)
     _keep_account(thing, plan)
     FreeCAD.Console.PrintLog(f"Tool Axis: {len(plan.operations)} operations, {len(copies)} turned copies\n")
 
 
 def _keep_account(thing, plan):
-    """Write what is in no operation into a whole plan, and what several tools come to; nothing where there is one."""
-    thing.InNoOperation = _text_of_areas(plan)
+    """Write what several tools come to into a whole plan; nothing where there is one."""
     if len(plan.tools) < 2:
         assign(thing, Account="", ToolsUsed=[])
         return
@@ -217,11 +217,14 @@ def _keep_account(thing, plan):
            ToolsUsed=[f"T{one.number} {one.name}: {one.operations}, {clock(one.seconds)}" for one in found.tools])
 
 
-def _text_of_areas(plan):
-    """What of the faces of a plan is in no operation, and the faces that it has joined."""
+def _text_of_areas(plan, of_one_part):
+    """What of the faces of a plan is in no operation, with the skins of which nothing is."""
     rows = {name: [one._asdict() for one in getattr(plan, name)] for name in ("unplanned", "held", "machined_before")}
     rows["unplanned"] = [{**one, "point": list(one["point"])} for one in rows["unplanned"]]
-    rows["joined"] = [list(face.numbers) for face in plan.part.faces if face.members]
+    if of_one_part:  # faces of several are counted through those that have operations
+        known = {op.face.numbers for op in plan.operations}
+        skins = [face.numbers for face in plan.part.faces if face.members]
+        rows["joined"] = [list(skin) for skin in skins if skin not in known]
     return json.dumps(rows)
 
 

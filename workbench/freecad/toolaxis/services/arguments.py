@@ -362,12 +362,13 @@ def check_faces_after(faces, setup):
         When they are others.
     """
     asked = faces_of_setup(setup)
+    if set(faces) == set(asked):
+        return
     parts = {thing.Name for thing, _ in asked}
-    given = {thing.Name for thing, _ in faces}
-    if given != parts:
+    if {thing.Name for thing, _ in faces} != parts:
         raise _refusal(f"the earlier setup {setup.Label} is one of another part: plan all setups of one part")
-    is_whole = len(parts) == 1 and set(faces) == {(faces[0][0], name) for name in sculptured(faces[0][0])}
-    if not is_whole and set(faces) != set(asked):
+    part = faces[0][0]
+    if len(parts) > 1 or set(faces) != {(part, name) for name in sculptured(part)}:
         raise _refusal("faces are named, and an earlier setup too, which has its own: give the part alone")
 
 

@@ -288,7 +288,7 @@ def _areas_in_no_operation(words):
 
 
 def _join_again(part, joined):
-    """A part with the faces joined that a plan has joined, some of which may lie in no operation."""
+    """A part with the skins joined that a plan has, but no operation of it machines."""
     from toolaxis.skin.join import join
 
     for numbers in joined:

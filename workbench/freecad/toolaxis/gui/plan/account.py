@@ -45,12 +45,25 @@ def headline(account):
     rest = [form.format(percent(area, account.area)) for area, form in rows if area > _NONE]
     told = translate("ToolAxis", "{} of {} machined").format(percent(account.machined, account.area),
                                                              area_text(account.area))
-    text = ", ".join([told, *rest]) + "."
+    text = " ".join([", ".join([told, *rest]) + ".", *texts_of_areas_aside(account.clamped, account.machined_before)])
     if not account.tools:
         return text
     used = translate("ToolAxis", "{} with {} of {} tools").format(clock(account.seconds), len(account.tools),
                                                                   account.offered)
     return f"{text} {', '.join([used, *count_texts(account.passes, account.step_over, account.axes)])}."
+
+
+def texts_of_areas_aside(clamped, machined_before):
+    """What of the faces is not asked for, a sentence for each reason.
+
+    Parameters
+    ----------
+    clamped, machined_before : float
+        mm^2 that lie in the clamped side, and that earlier setups machine.
+    """
+    rows = [(clamped, translate("ToolAxis", "Clamped in this setup: {}.")),
+            (machined_before, translate("ToolAxis", "Machined in earlier setups: {}."))]
+    return [form.format(area_text(area)) for area, form in rows if area > _NONE]
 
 
 def count_texts(passes, step_over, axes):

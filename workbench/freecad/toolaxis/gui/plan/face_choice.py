@@ -46,6 +46,7 @@ class FaceChoice(QtCore.QObject):
         """Begin to listen; what is filled in before tells nothing."""
         form = self.form
         self.fields.racks.on_change(self._take_only_body)
+        self.fields.earlier.on_change(self._offer_bodies)
         form.addFaces.clicked.connect(self._add_selected)
         form.removeFaces.clicked.connect(self.fields.faces.remove_marked)
         form.facesFilter.textChanged.connect(self.fields.faces.show_matching)

@@ -24,6 +24,11 @@ class FaceList:
     Parameters
     ----------
     widget : QListWidget
+
+    Attributes
+    ----------
+    is_fixed : bool
+        Whether they are those of an earlier setup.
     """
 
     def __init__(self, widget):
@@ -31,6 +36,7 @@ class FaceList:
         self._slots, self._sought = [], ""
         self._faces, self._skins, self._areas = [], (), {}
         self._kind, self._hidden = ALL, frozenset()
+        self.is_fixed = False
 
     def on_change(self, slot):
         """Call a slot without arguments whenever faces come or go.
@@ -118,6 +124,8 @@ class FaceList:
         if not things:
             return translate("ToolAxis", "no faces")
         whole = things[0].Label if len(things) == 1 else translate("ToolAxis", "{} parts").format(len(things))
+        if self.is_fixed:
+            return translate("ToolAxis", "{} of {}, as in the earlier setup").format(len(self._faces), whole)
         if not self._skins:
             return translate("ToolAxis", "{} of {}").format(len(self._faces), whole)
         told = translate("ToolAxis", "skins: {} of {} faces, {}").format(self.widget.count(), len(self._faces), whole)

@@ -7,6 +7,7 @@ import FreeCAD
 from freecad.toolaxis.document.inputs import JobInputs, flute_of
 from freecad.toolaxis.document.machine_limits import PREFIX, mounting
 from freecad.toolaxis.document.strategies import INDEXED, STRATEGIES, keeps_roughness, needs, titles
+from freecad.toolaxis.gui.plan.earlier_choice import EarlierChoice
 from freecad.toolaxis.gui.plan.face_list import BodyList, FaceList
 from freecad.toolaxis.gui.plan.rack_choice import RackChoice
 from freecad.toolaxis.gui.plan.setup_tab import SetupTab
@@ -58,6 +59,7 @@ class PlanForm:
         self.lines = {field: self._find(field, QtWidgets.QLineEdit) for field in _LINES}
         self.racks, self._several = RackChoice(form), False
         self.setup = SetupTab(form, self.faces)
+        self.earlier = EarlierChoice(form, self.faces)
         self.quantities["feedrate"] = QuantityField(self._find("feedrate"), "mm/min", (0, 2), 100.0)
         self.kind, self.tool = self._find("kind", QtWidgets.QComboBox), self._find("tool", QtWidgets.QComboBox)
         self.kind.addItems([translate("ToolAxisPlan", one.title) for one in cutters().values()])
@@ -104,6 +106,7 @@ class PlanForm:
         for line in self.lines.values():
             line.textChanged.connect(lambda _: slot())
         self.racks.on_change(slot)
+        self.earlier.on_change(slot)
         self.avoid.widget.itemChanged.connect(lambda _: slot())
         self.faces.on_change(slot)
 
@@ -285,6 +288,7 @@ class PlanForm:
         """
         self.unshown, inputs = inputs_to_show(inputs, self.spindle.maximum())
         self.faces.faces = inputs.faces
+        self.earlier.choose(inputs.after)
         self.quantities["corner"].value, self.quantities["taper"].value = 1.0, 5.0
         self.set_tool(inputs.tool)
         self.shank.rows, self.holder.rows = inputs.shank or (), inputs.holder or ()
@@ -331,7 +335,7 @@ class PlanForm:
                 "flute_length": self.quantities["fluteLength"].value,
                 **{name: self.quantities[name].value for name in ("scallop", "tolerance", "allowance")},
                 "limits": self.limits_text, "obstacles": self.avoid.ticked,
-                "origin": self.setup.origin, "stock_box": self.setup.stock_box,
+                "origin": self.setup.origin, "stock_box": self.setup.stock_box, "after": self.earlier.chosen,
                 "objective": OBJECTIVES[self._find("objective", QtWidgets.QComboBox).currentIndex()],
                 "direction": DIRECTIONS[self._find("direction", QtWidgets.QComboBox).currentIndex()],
                 "passes": PASSES[self._find("passes", QtWidgets.QComboBox).currentIndex()]

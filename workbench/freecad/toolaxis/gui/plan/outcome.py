@@ -3,7 +3,7 @@
 import FreeCAD
 from freecad.toolaxis.document.plan_account import account_of, mean_step_over
 from freecad.toolaxis.document.strategies import strategy_of
-from freecad.toolaxis.gui.plan.account import count_texts, headline
+from freecad.toolaxis.gui.plan.account import count_texts, headline, texts_of_areas_aside
 from freecad.toolaxis.services.time_left import clock
 
 translate = FreeCAD.Qt.translate
@@ -61,7 +61,8 @@ def _rack_sentence(plan):
 
 
 def figures(plan):
-    """What a plan comes to over all its operations, a sentence: time, passes, mean step-over and number of axes.
+    """What a plan comes to over all its operations, in sentences: time, passes, mean step-over and number of axes, then
+    what of the faces is not asked for.
 
     Parameters
     ----------
@@ -69,7 +70,9 @@ def figures(plan):
         With an operation that has passes.
     """
     passes = sum(op.orientation.passes for op in plan.operations if op.done)
-    return ", ".join([clock(plan.seconds), *count_texts(passes, mean_step_over(plan), plan.orientations)]) + "."
+    counts = ", ".join([clock(plan.seconds), *count_texts(passes, mean_step_over(plan), plan.orientations)])
+    areas = [sum(one.area for one in some) for some in (plan.held, plan.machined_before)]
+    return " ".join([f"{counts}.", *texts_of_areas_aside(*areas)])
 
 
 def touched_once(plan):

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import FreeCAD
 import FreeCADGui
+from freecad.toolaxis.document.earlier_setups import fingerprint_of
 from freecad.toolaxis.document.inputs import JobInputs, inputs_of
-from freecad.toolaxis.document.kinds import is_operation
+from freecad.toolaxis.document.kinds import is_operation, plan_of
 from freecad.toolaxis.document.machine_limits import offered
 from freecad.toolaxis.document.placement import chain_of
 from freecad.toolaxis.document.plan_account import account_from
@@ -41,6 +42,8 @@ from freecad.toolaxis.services.obstacles import bodies_in
 from freecad.toolaxis.services.pictures import drawn
 from freecad.toolaxis.services.write_results import apply
 from PySide import QtWidgets
+
+from toolaxis.report.areas_aside import has_clamped_area
 
 translate = FreeCAD.Qt.translate
 
@@ -79,6 +82,7 @@ class PlanPanel(Panel):
         self.tools = ToolOffer(document, self.form, self.fields)
         self.ongoing = ProgressLine(self.form, self._tell, lambda: self.work is not None and self.form.stop.isEnabled())
         self.computed, self.refusal = None, ""
+        self.followed = ""
         self.outrun = False
         self._fill(inputs)
         self._connect()
@@ -98,20 +102,38 @@ class PlanPanel(Panel):
 
     def accept(self):
         """Put the plan into the document, as one undo step; refused without a plan."""
-        if not self.ready:
+        if not self._put_into_document():
             return False
+        self._close()
+        return True
+
+    def _put_into_document(self):
+        """Put the plan into the document, as one undo step; its operations, none where it is refused."""
+        if not self.ready:
+            return []
+        if fingerprint_of(self.computed.after) != self.followed:  # the earlier setup has changed meanwhile
+            self.computed = None
+            self.show_state()
+            return []
         plan = self.view.plan
         inputs = replace(self.computed, pieces=self._pieces())
         before = None if self.operation is None else inputs_of(self.operation)
         try:
-            apply(self.document, inputs, plan, self.operation)
+            made = apply(self.document, inputs, plan, self.operation)
         except Exception as reason:
             self._tell(sentence(reason), bad=True)
             FreeCAD.Console.PrintLog(f"{reason!r}\n")
-            return False
+            return []
         record(*([plan_line(inputs)] if before is None else again_lines(self.operation, before, inputs)))
-        self._close()
-        return True
+        return made
+
+    def plan_next_setup(self):
+        """Put the plan into the document, and open the panel for the setup after it."""
+        inputs, document = self.computed, self.document
+        made = self._put_into_document()
+        if made:
+            following = replace(inputs, after=plan_of(made[0]), held="", pieces=())
+            self._open_instead(lambda: PlanPanel(document, following))
 
     # state
 
@@ -132,6 +154,7 @@ class PlanPanel(Panel):
         self.given = inputs.pieces
         self.keeps = self.operation is not None and is_operation(self.operation) and bool(self.given)
         self.fields.offer_machines(offered(self.document))
+        self.fields.earlier.offer(self.document, self.operation)
         self.fields.fill(inputs)
         bodies = bodies_in(self.document, [thing for thing, _ in inputs.faces])
         self.fields.avoid.offer(bodies, inputs.obstacles)
@@ -154,6 +177,7 @@ class PlanPanel(Panel):
         self.view.told.connect(self._warn)
         self.view.curve.picked.connect(self.compute_with)
         self.remedies.chosen.connect(self.compute_again)
+        form.nextSetup.clicked.connect(self.plan_next_setup)
 
     def _faces_added(self, problem):
         self.problem = problem
@@ -204,6 +228,7 @@ class PlanPanel(Panel):
         for page in (form.jobPage, form.setupPage, form.toolPage, form.advancedPage, self.view.map, self.view.curve):
             page.setEnabled(not computing)
         form.playAll.setEnabled(self.ready)
+        form.nextSetup.setVisible(self.ready and has_clamped_area(self.view.plan))
         if not self.ready or self.player.plan is not self.view.plan:
             self.player.close()
         if self.buttons is not None:
@@ -261,7 +286,7 @@ class PlanPanel(Panel):
             self.remedies.show_advice(one_line(reason), inputs)
             self.show_state()
             return
-        titles = titles_of(inputs)
+        titles, self.followed = titles_of(inputs), fingerprint_of(inputs.after)
         self.choice.begin(inputs)
         self.work = BackgroundWork(lambda progress: _make_plan(task, progress), None, _growing, digest_piece)
         known = {} if inputs.rack else titles
@@ -412,6 +437,8 @@ class PlanPanel(Panel):
         self.tools.forget(name)
         if self.fields.faces.remove_object(name):
             self.problem = translate("ToolAxis", "The part was deleted: select other faces")
+        elif self.fields.earlier.remove_object(name):
+            self.problem = translate("ToolAxis", "The earlier setup was deleted: choose another one, or none")
         elif self.fields.avoid.remove_object(name):
             self.problem = translate("ToolAxis", "A body to avoid was deleted: compute again without it")
         else:
