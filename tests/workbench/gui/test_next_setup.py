@@ -140,6 +140,7 @@ def test_in_german(german, roof):
     desk.wait(lambda: desk.form("ToolAxisPlan") not in (None, form), "the next panel opens")
     form = desk.form("ToolAxisPlan")
     assert form.facesTold.toolTip() == "1 von Roof, wie in der früheren Aufspannung"
+    desk.shot("98-faces-german")
     form.tabs.setCurrentWidget(form.advancedTab)
     desk.down(form.after)
     assert form.afterLabel.text() == "Frühere Aufspannung"

@@ -57,7 +57,7 @@ def setups_up_to(setup):
     found = []
     while setup is not None and setup not in found:
         found.insert(0, setup)
-        setup = setup.After
+        setup = setup.After if is_plan(setup) else None
     return found
 
 

@@ -337,7 +337,8 @@ def inputs_of(thing):
                      thing.Strategy, thing.Roughness or ROUGHNESS, thing.Tolerance.Value, thing.CutPattern,
                      tuple(thing.Rack), thing.MostTools or None, thing.ToolNumber, thing.ToolTitle, thing.Stock.Value,
                      thing.LeastLean.Value, thing.GreatestStepOver.Value, thing.AllowanceOn, thing.Lead.Value,
-                     thing.AvoidFaces, thing.Held, thing.Origin, thing.StockBox, thing.After)
+                     thing.AvoidFaces, thing.Held, thing.Origin, thing.StockBox,
+                     thing.After if is_plan(thing) else None)
 
 
 def flute_of(tool):

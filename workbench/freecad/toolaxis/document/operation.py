@@ -62,8 +62,6 @@ INPUTS = (
                                        "operation to change it", True),
     Property("String", "AvoidFaces", _ASKED, "Faces of the part that no tool may touch: 3,5-8"),
     Property("String", "Held", _ASKED, "Clamped side of the part: z<12.5"),
-    # Hidden: what follows a setup does not depend on it as on a part, and takes none of its operations along.
-    Property("LinkHidden", "After", _ASKED, "Plan of the setup before this one; nothing: this is the first setup"),
     Property("String", "Origin", _ASKED, "Origin of the work coordinates: stock:top, part:top-front-left or "
              "point:X,Y,Z; nothing: that of the part"),
     Property("String", "StockBox", _ASKED, "Margins of the stock: 2, or 1,1,1,1,0,2 for -X, +X, -Y, +Y, -Z, +Z; "
@@ -251,7 +249,7 @@ def set_inputs(thing, inputs):
            MostTools=inputs.most_tools or 0, ToolNumber=inputs.tool_number, ToolTitle=inputs.tool_title,
            Stock=inputs.stock, LeastLean=inputs.least_lean, GreatestStepOver=inputs.greatest_step_over,
            AllowanceOn=inputs.allowance_on, Lead=inputs.lead, AvoidFaces=inputs.avoid_faces, Held=inputs.held,
-           Origin=inputs.origin, StockBox=inputs.stock_box, After=inputs.after)
+           Origin=inputs.origin, StockBox=inputs.stock_box)
 
 
 def set_results(thing, found, not_checked):

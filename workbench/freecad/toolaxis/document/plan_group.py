@@ -17,8 +17,10 @@ from freecad.toolaxis.document.sub_surface_shape import CLEAN_UP, is_shown
 
 from toolaxis.plan.baseline import clock
 
-_FOUND, _KEPT = "Result", "Tool Axis"
+_ASKED, _FOUND, _KEPT = "Inputs", "Result", "Tool Axis"
 
+# Hidden: what follows a setup does not depend on it as on a part, and takes none of its operations along.
+FOLLOWS = Property("LinkHidden", "After", _ASKED, "Plan of the setup before this one; nothing: this is the first setup")
 FIGURES = (
     Property("String", "Outcome", _FOUND, "Outcome: complete, incomplete or cancelled", True),
     Property("StringList", "Warnings", _FOUND, "Warnings about the part", True),
@@ -58,7 +60,7 @@ class WholePlan(Proxy):
     """
 
     Type = "ToolAxisPlan"
-    properties = (*INPUTS, *FIGURES, *KEPT)
+    properties = (*INPUTS, FOLLOWS, *FIGURES, *KEPT)
 
     def __init__(self, thing):
         super().__init__(thing)
@@ -191,6 +193,7 @@ def keep_plan(thing, inputs, plan):
     from toolaxis.plan.blades_document import blades_document
 
     set_inputs(thing, inputs)
+    assign(thing, After=inputs.after)
     copies = {} if plan.blades is None else plan.blades.copies
     thing.Options = json.dumps([asdict(one) for one in plan.options])
     thing.Baselines = json.dumps([asdict(one) for one in plan.baselines])
