@@ -145,6 +145,7 @@ def check_earlier_setup(inputs):
         In one sentence with the remedy.
     """
     from toolaxis.errors import InvalidInput
+    from toolaxis.job.planning.earlier_setups import check_after
 
     if inputs.after is None:
         return
@@ -155,6 +156,5 @@ def check_earlier_setup(inputs):
         raise InvalidInput("sub-surfaces that are locked or drawn by hand do not go with an earlier setup: unlock "
                            "them, or choose no earlier setup")
     strategy = strategies().get(inputs.strategy)
-    if strategy is not None and strategy.in_layers:
-        raise InvalidInput(f"strategy {inputs.strategy!r} does not go with earlier setups, which leave pieces of "
-                           "faces: take another one")
+    if strategy is not None:
+        check_after(strategy)
