@@ -11,7 +11,7 @@ from toolaxis.job.planning.other_tools import ReckonedTimes, may_take_less_time,
 from toolaxis.job.planning.share_axes import share_axes as share
 from toolaxis.job.planning.sub_surfaces import Target
 from toolaxis.numeric.vectors import unit
-from toolaxis.plan.plan import Plan
+from toolaxis.plan.plan import INDEX_SECONDS, Plan
 from toolaxis.progress import NO_PROGRESS
 from toolaxis.regions.tool_choice import AxisTime, ToolChain, ToolChoice, choose_tools
 from toolaxis.shape.part import Part
@@ -115,6 +115,26 @@ def test_nothing_is_planned_twice_where_little_is_to_be_gained(large_first: None
     plan = planned_bowl()
     assert [op.tool.name for op in plan.operations] == ["ball:8"]
     assert not ReckonedTimes().find_slow_faces(plan.operations, plan.inputs, {0, 1})
+
+
+def test_what_took_longer_than_was_said_is_expected_of_other_tools_too(large_first: None,
+                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_tools, "_SECONDS", 1e6)
+    (slow,), inputs = (plan := planned_bowl()).operations, plan.inputs
+    monkeypatch.undo()
+    spent = slow.seconds(inputs.feedrate, inputs.rapid)
+
+    def found(said: float, said_of_other: float) -> dict[int, list[int]]:
+        """The faces that are slow where the cuts of both tools were said to take such shares of what was spent."""
+        chains = [ToolChain((tool,), share * spent / 1.4 + INDEX_SECONDS, 0.0)
+                  for tool, share in enumerate((said, said_of_other))]
+        times = ReckonedTimes()
+        times.add([slow.face], chains[0], chains)
+        return times.find_slow_faces([slow], inputs, {0, 1})
+
+    assert found(1.0, 0.5) == found(0.5, 0.3) == {1: [slow.face.number]}
+    assert found(1.0, 0.9) == found(0.5, 0.45) == {}, "a tenth less, not more than half"
+    assert found(2.0, 0.9) == {}, "what took less than was said makes others no quicker"
 
 
 def test_what_takes_as_long_or_machines_less_is_not_taken(large_first: None, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -78,9 +78,10 @@ class ReckonedTimes:
             own = [op for op in made if op.face.number == number]
             if len(sub_surfaces) != 1 or any(op.failed for op in own):
                 continue
-            likely = [(_likely_seconds(chain), chain.tools[0]) for chain in sub_surfaces[0].chains
-                      if chain.tools and chain.tools[0] > sub_surfaces[0].first and set(chain.tools) <= set(allowed)]
             spent = sum(op.seconds(inputs.feedrate, inputs.rapid) for op in own)
+            longer = _times_reckoned(spent, sub_surfaces[0])
+            likely = [(longer * _likely_seconds(chain), chain.tools[0]) for chain in sub_surfaces[0].chains
+                      if chain.tools and chain.tools[0] > sub_surfaces[0].first and set(chain.tools) <= set(allowed)]
             if likely and spent - min(likely)[0] >= max(_SECONDS, _SHARE * spent):
                 found.setdefault(min(likely)[1], []).append(number)
                 promised += spent - min(likely)[0]
@@ -157,3 +158,12 @@ def _likely_seconds(chain: ToolChain) -> float:
     """What the cuts of a chain take when it is made, about, and what it leaves, s: into how many sub-surfaces faces
     fall, and so how many index moves there are, nobody knows before."""
     return _MADE * (chain.seconds - INDEX_SECONDS * len(chain.tools)) + chain.charge
+
+
+def _times_reckoned(spent: float, face: ReckonedFace) -> float:
+    """How many times what was said of the tools that were taken their cuts took in the end, at least once.
+
+    What makes them longer, such as places that interrupt passes, is there for other tools too.
+    """
+    said = [_likely_seconds(chain) for chain in face.chains if chain.tools and chain.tools[0] == face.first]
+    return max(1.0, spent / max(min(said, default=spent), 1e-9))
