@@ -49,21 +49,28 @@ class JerkProfile:
             s.
         """
         t = np.atleast_1d(np.asarray(times, dtype=float))
-        begins = np.concatenate([[0.0], np.cumsum(self.durations)])
+        ends = np.cumsum(self.durations)
+        begins = np.concatenate([[0.0], ends])
         states = np.zeros((8, 3))
         states[0, 1] = self.start
         for i in range(7):
             states[i + 1] = _after(states[i], self.jerks[i], self.durations[i])
-        which = np.clip(np.searchsorted(begins, t, side="right") - 1, 0, 6)
-        moved = _after(states[which], self.jerks[which], t - begins[which])
-        return np.column_stack([moved, self.jerks[which]])
+        which = np.searchsorted(begins, t, side="right") - 1
+        which = np.clip(which, 0, 6)
+        jerk = self.jerks[which]
+        moved = _after(states[which], jerk, t - begins[which])
+        return np.column_stack([moved, jerk])
 
 
 def _after(state: Array, jerk: Array, time: Array) -> Array:
     """Position, velocity and acceleration after a time of constant jerk, (..., 3)."""
-    position, velocity, acceleration = state[..., 0], state[..., 1], state[..., 2]
-    position = position + time * (velocity + time * (acceleration / 2 + time * jerk / 6))
-    velocity = velocity + time * (acceleration + time * jerk / 2)
+    position = state[..., 0]
+    velocity = state[..., 1]
+    acceleration = state[..., 2]
+    mean_velocity = velocity + time * (acceleration / 2 + time * jerk / 6)
+    mean_acceleration = acceleration + time * jerk / 2
+    position = position + time * mean_velocity
+    velocity = velocity + time * mean_acceleration
     acceleration = acceleration + time * jerk
     return np.stack([position, velocity, acceleration], axis=-1)
 
@@ -80,9 +87,11 @@ def check_limits(velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) 
     InvalidInput
         When one is not a finite number above zero.
     """
-    for name, values in (("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)):
+    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    for name, values in limits.items():
         rows = np.atleast_1d(np.asarray(values, dtype=float))
-        bad = np.flatnonzero(~(np.isfinite(rows) & (rows > 0)))
+        good = np.isfinite(rows) & (rows > 0)
+        bad = np.flatnonzero(~good)
         if bad.size:
             raise InvalidInput(f"{name} limit {bad[0]} is {rows[bad[0]]}: it must be a finite number above zero")
 
@@ -100,9 +109,11 @@ def ramp_time(change: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> tu
     a = np.asarray(acceleration, dtype=float)
     j = np.asarray(jerk, dtype=float)
     is_short = size <= a * a / j  # the acceleration does not come to its limit
-    rise = np.where(is_short, np.sqrt(size / j), a / j)
-    hold = np.where(is_short, 0.0, np.maximum(size / a - a / j, 0.0))
-    return rise, hold
+    longest_rise = a / j
+    rise = np.where(is_short, np.sqrt(size / j), longest_rise)
+    whole = size / a
+    hold = np.maximum(whole - longest_rise, 0.0)
+    return rise, np.where(is_short, 0.0, hold)
 
 
 def ramp_length(start: ArrayLike, end: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> Array:
@@ -132,21 +143,28 @@ def reachable(start: ArrayLike, length: ArrayLike, acceleration: ArrayLike, jerk
         mm.
     acceleration, jerk : array_like
     """
-    v0, way, a, j = (np.asarray(value, dtype=float) for value in (start, length, acceleration, jerk))
+    v0 = np.asarray(start, dtype=float)
+    way = np.asarray(length, dtype=float)
+    a = np.asarray(acceleration, dtype=float)
+    j = np.asarray(jerk, dtype=float)
     rise = _cubic_root(2 * v0 / j, way / j)
     without_hold = v0 + j * rise * rise
     # Beyond this change of velocity the acceleration is held at its limit.
     shift = a * a / j
     square = (v0 - shift / 2) ** 2 + 2 * a * way
-    with_hold = -shift / 2 + np.sqrt(np.maximum(square, 0.0))
-    return np.asarray(np.where(without_hold - v0 <= shift, without_hold, with_hold))
+    root = np.sqrt(np.maximum(square, 0.0))
+    with_hold = -shift / 2 + root
+    is_short = without_hold - v0 <= shift
+    return np.asarray(np.where(is_short, without_hold, with_hold))
 
 
 def _cubic_root(p: Array, q: Array) -> Array:
     """The root x >= 0 of x^3 + p x = q with p, q >= 0, without cancellation."""
     # Cardano's formula, of whose two cube roots the smaller one follows from the larger.
-    half, third = q / 2, p / 3
-    big = np.cbrt(half + np.sqrt(half * half + third**3))
+    half = q / 2
+    third = p / 3
+    discriminant = half * half + third**3
+    big = np.cbrt(half + np.sqrt(discriminant))
     small = np.where(big > 0, third / np.where(big > 0, big, 1.0), 0.0)
     root = big - small
     linear = q / np.where(p > 0, p, 1.0)
@@ -155,8 +173,10 @@ def _cubic_root(p: Array, q: Array) -> Array:
     # Newton's method takes away what is left of cancellation.
     for _ in range(3):
         slope = 3 * root * root + p
-        step = (root**3 + p * root - q) / np.where(slope > 0, slope, 1.0)
-        root = np.where(slope > 0, root - step, root)
+        rises = slope > 0
+        rest = root**3 + p * root - q
+        step = rest / np.where(rises, slope, 1.0)
+        root = np.where(rises, root - step, root)
     return np.asarray(np.maximum(root, 0.0))
 
 
@@ -171,11 +191,18 @@ def peak_velocity(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLik
     ends : two array_like
         Velocities at the start and at the end.
     """
-    way, top, a, j = (np.asarray(value, dtype=float) for value in (length, velocity, acceleration, jerk))
-    v0, v1 = (np.asarray(value, dtype=float) for value in ends)
+    way = np.asarray(length, dtype=float)
+    top = np.asarray(velocity, dtype=float)
+    a = np.asarray(acceleration, dtype=float)
+    j = np.asarray(jerk, dtype=float)
+    v0 = np.asarray(ends[0], dtype=float)
+    v1 = np.asarray(ends[1], dtype=float)
     low = np.maximum(v0, v1)
-    reachable_from_both = np.minimum(reachable(v0, way, a, j), reachable(v1, way, a, j))
-    high = np.maximum(np.minimum(top, reachable_from_both), low)
+    from_start = reachable(v0, way, a, j)
+    from_end = reachable(v1, way, a, j)
+    reachable_from_both = np.minimum(from_start, from_end)
+    high = np.minimum(top, reachable_from_both)
+    high = np.maximum(high, low)
     is_symmetric = np.asarray(v0 == v1)
     symmetric_peak = np.minimum(top, reachable(v0, way / 2, a, j))
     peak = np.array(np.where(is_symmetric, symmetric_peak, high))
@@ -191,12 +218,15 @@ def _bisect_velocity(low: Array, high: Array, v0: Array, v1: Array, way: Array, 
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
         good = _needed(v0, v1, middle, a, j) <= way
-        low, high = np.where(good, middle, low), np.where(good, high, middle)
+        low = np.where(good, middle, low)
+        high = np.where(good, high, middle)
     return low
 
 
 def _needed(v0: Array, v1: Array, peak: Array, a: Array, j: Array) -> Array:
-    return np.asarray(ramp_length(v0, peak, a, j) + ramp_length(peak, v1, a, j))
+    way_up = ramp_length(v0, peak, a, j)
+    way_down = ramp_length(peak, v1, a, j)
+    return np.asarray(way_up + way_down)
 
 
 def travel_time(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,
@@ -214,7 +244,8 @@ def travel_time(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike,
     **Source** [grandguillaume2021] Eq. (8), whose law of seven segments this integrates.
     Properties: (1) from rest to rest under jerk alone it is 4 (L/(2 J))^(1/3); (2) it is the time of `profile`.
     """
-    return np.asarray(segment_durations(length, velocity, acceleration, jerk, ends).sum(axis=-1))
+    durations = segment_durations(length, velocity, acceleration, jerk, ends)
+    return np.asarray(durations.sum(axis=-1))
 
 
 def profile(length: float, velocity: float, acceleration: float, jerk: float,
@@ -238,14 +269,16 @@ def profile(length: float, velocity: float, acceleration: float, jerk: float,
     check_limits(velocity, acceleration, jerk)
     if not (np.isfinite(length) and length >= 0):
         raise InvalidInput(f"length is {length} mm: it must be a finite number, not below zero")
+    start, end = ends
     if min(ends) < 0 or max(ends) > velocity * (1 + 1e-12):
-        raise InvalidInput(f"velocities at the ends are {ends[0]} and {ends[1]}: they must lie between 0 and "
+        raise InvalidInput(f"velocities at the ends are {start} and {end}: they must lie between 0 and "
                            f"{velocity}")
-    needed = float(ramp_length(ends[0], ends[1], acceleration, jerk))
+    needed = float(ramp_length(start, end, acceleration, jerk))
     if needed > length * (1 + 1e-9) + 1e-12:
-        raise InvalidInput(f"length is {length} mm: changing from {ends[0]} to {ends[1]} mm/s takes {needed} mm")
+        raise InvalidInput(f"length is {length} mm: changing from {start} to {end} mm/s takes {needed} mm")
     durations = segment_durations(length, velocity, acceleration, jerk, ends)
-    return JerkProfile(durations, _jerks(durations, ends, jerk), float(ends[0]))
+    jerks = _SIGNS * np.asarray(jerk, dtype=float)[..., None] * np.ones_like(durations)
+    return JerkProfile(durations, np.asarray(jerks), float(start))
 
 
 def segment_durations(length: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike,
@@ -259,17 +292,17 @@ def segment_durations(length: ArrayLike, velocity: ArrayLike, acceleration: Arra
         Velocities at the start and at the end.
     """
     peak = peak_velocity(length, velocity, acceleration, jerk, ends)
-    v0, v1, way = (np.asarray(value, dtype=float) for value in (*ends, length))
+    v0 = np.asarray(ends[0], dtype=float)
+    v1 = np.asarray(ends[1], dtype=float)
+    way = np.asarray(length, dtype=float)
     up, hold_up = ramp_time(peak - v0, acceleration, jerk)
     down, hold_down = ramp_time(peak - v1, acceleration, jerk)
     way_up = (v0 + peak) / 2 * (2 * up + hold_up)
     way_down = (v1 + peak) / 2 * (2 * down + hold_down)
     left = np.maximum(way - way_up - way_down, 0.0)
     moves = peak > 0
-    cruise = np.where(moves, left / np.where(moves, peak, 1.0), 0.0)
+    speed = np.where(moves, peak, 1.0)
+    cruise = np.where(moves, left / speed, 0.0)
     segments = np.broadcast_arrays(up, hold_up, up, cruise, down, hold_down, down)
     return np.stack(segments, axis=-1)
 
-
-def _jerks(durations: Array, ends: tuple[ArrayLike, ArrayLike], jerk: ArrayLike) -> Array:
-    return np.asarray(_SIGNS * np.asarray(jerk, dtype=float)[..., None] * np.ones_like(durations))

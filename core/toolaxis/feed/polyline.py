@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -78,12 +79,15 @@ class PolylineSchedule:
     def times(self) -> Array:
         """Time of each segment, (k,) s, half of the blends at either end included."""
         ends = (self.corners[:-1], self.corners[1:])
-        return np.asarray(travel_time(self.runs, *self.limits, ends) + (self.blends[:-1] + self.blends[1:]) / 2)
+        between_blends = travel_time(self.runs, *self.limits, ends)
+        half_blends = (self.blends[:-1] + self.blends[1:]) / 2
+        return np.asarray(between_blends + half_blends)
 
     @property
     def segment_times(self) -> Array:
         """Time of each programmed segment, (n,) s: that of segments in one line shared by length."""
-        return np.asarray(self.times[self.parts] * self.shares)
+        of_whole_segment = self.times[self.parts]
+        return np.asarray(of_whole_segment * self.shares)
 
     @property
     def duration(self) -> float:
@@ -92,17 +96,19 @@ class PolylineSchedule:
 
     def motion(self) -> JointMotion:
         """What every axis does."""
-        count, axes = self.directions.shape
+        number, axes = self.directions.shape
         # Of each run seven segments, and two of the blend after it.
-        durations = np.zeros((count, 9))
-        jerks = np.zeros((count, 9, axes))
+        durations = np.zeros((number, 9))
+        jerks = np.zeros((number, 9, axes))
         speeds_at_ends = (self.corners[:-1], self.corners[1:])
         durations[:, :7] = segment_durations(self.runs, *self.limits, speeds_at_ends)
-        greatest_jerk = self.limits[2][:, None] * self.directions
+        _, _, jerk = self.limits
+        greatest_jerk = jerk[:, None] * self.directions
         jerks[:, :7] = _SIGNS[:, None] * greatest_jerk[:, None, :]
         durations[:-1, 7:] = self.blends[1:-1, None] / 2
         change = self.corners[1:-1, None] * np.diff(self.directions, axis=0)
-        squared = np.where(self.blends > 0, self.blends, 1.0)[1:-1, None] ** 2
+        time = np.where(self.blends > 0, self.blends, 1.0)
+        squared = time[1:-1, None] ** 2
         jerks[:-1, 7] = 4 * change / squared
         jerks[:-1, 8] = -4 * change / squared
         return JointMotion(durations.reshape(-1), jerks.reshape(-1, axes), self.start)
@@ -136,41 +142,97 @@ def schedule_polyline(joints: ArrayLike, tips: ArrayLike, feeds: ArrayLike, boun
     Properties: (1) no axis exceeds its velocity, acceleration or jerk; (2) the tip stays within the tolerance; (3) a
     tolerance never makes the path slower than stops do.
     """
-    points, corners = as_rows(tips, 3, "tips"), as_rows(joints, len(bounds.velocity), "joint coordinates")
+    points = as_rows(tips, 3, "tips")
+    corners = as_rows(joints, len(bounds.velocity), "joint coordinates")
     if len(points) != len(corners) or len(points) < 2:
         raise InvalidInput(f"{len(corners)} joint positions for {len(points)} tips: two or more of each are needed")
     if not (np.isfinite(tolerance) and tolerance >= 0):
         raise InvalidInput(f"corner tolerance is {tolerance} mm: it must be a finite number, not below zero")
-    lengths, directions, turns = _segments(points, corners)
-    limits = bounds.along(directions, feeds)
-    wanted = np.broadcast_to(np.asarray(feeds, dtype=float), lengths.shape)
-    aligned = (turns <= ALIGNED) & (np.abs(np.diff(directions, axis=0)).max(axis=1) <= ALIGNED)
-    rest = np.zeros(len(points), dtype=bool) if stops is None else np.asarray(stops, dtype=bool)
-    kept = rest | np.concatenate([[True], ~(aligned & (wanted[:-1] == wanted[1:])), [True]])
-    parts = np.cumsum(kept[:-1]) - 1
+    programmed = _segments(points, corners)
+    limits = bounds.along(programmed.directions, feeds)
+    wanted = np.broadcast_to(np.asarray(feeds, dtype=float), programmed.lengths.shape)
+    rest = np.zeros(len(points), dtype=bool)
+    if stops is not None:
+        rest = np.asarray(stops, dtype=bool)
+    kept = rest | _is_corner(programmed, wanted)
+    merged = _segments(points[kept], corners[kept])
     if not kept.all():
-        limits = bounds.along(_segments(points[kept], corners[kept])[1], wanted[kept[:-1]])
-    whole, directions, turns = _segments(points[kept], corners[kept])
-    jumps = np.diff(directions, axis=0)
-    caps = np.zeros(len(whole) + 1)
-    caps[1:-1] = np.minimum(_corner_speeds(jumps, turns, whole, bounds, tolerance),
-                            np.minimum(limits[0][:-1], limits[0][1:]))
+        limits = bounds.along(merged.directions, wanted[kept[:-1]])
+    caps = _corner_caps(merged, limits[0], bounds, tolerance)
     caps[rest[kept]] = 0.0
-    better = _better_stop(whole, limits, caps, _blend_times(caps, jumps, bounds))
-    shares = lengths / np.bincount(parts, lengths)[parts]
+    parts = np.cumsum(kept[:-1]) - 1
+    whole = np.bincount(parts, programmed.lengths)
+    shares = programmed.lengths / whole[parts]
+    path = _ProgrammedPath(corners[0], merged, limits, bounds, caps, shares, parts)
+    return _fastest(list(_schedules_to_try(path)))
 
-    def _choice(stopping: Bools, fastest: float) -> PolylineSchedule:
-        held = np.concatenate([[True], stopping & (turns > STRAIGHT), [True]])
-        most = np.where(held, 0.0, np.minimum(caps, fastest))
-        speed = look_ahead(_runs(whole, most, jumps, bounds), limits[1], limits[2], most)
-        return PolylineSchedule(corners[0], directions, limits, _runs(whole, speed, jumps, bounds), speed,
-                                _blend_times(speed, jumps, bounds), shares, parts)
 
-    choices = [_choice(better, np.inf), _choice(np.ones_like(better), 0.0)]
+class _Segments(NamedTuple):
+    """Straight segments: their lengths, axis motion per mm, and changes of the tip's direction between them."""
+
+    lengths: Array
+    directions: Array
+    turns: Array
+
+    @property
+    def jumps(self) -> Array:
+        """Changes of axis motion per mm at the inner corners."""
+        return np.diff(self.directions, axis=0)
+
+
+class _ProgrammedPath(NamedTuple):
+    """What all schedules of a path have in common; caps are the greatest speeds of its corners."""
+
+    start: Array
+    segments: _Segments
+    limits: tuple[Array, Array, Array]
+    bounds: AxisBounds
+    caps: Array
+    shares: Array
+    parts: NDArray[np.int64]
+
+    def schedule(self, stopping: Bools, fastest: float) -> PolylineSchedule:
+        """The schedule with stops at some inner corners, and no corner faster than a speed."""
+        lengths, directions, turns = self.segments
+        jumps = self.segments.jumps
+        _, acceleration, jerk = self.limits
+        stops_inside = stopping & (turns > STRAIGHT)
+        held = np.concatenate([[True], stops_inside, [True]])
+        most = np.where(held, 0.0, np.minimum(self.caps, fastest))
+        shortest_runs = _runs(lengths, most, jumps, self.bounds)
+        speed = look_ahead(shortest_runs, acceleration, jerk, most)
+        runs = _runs(lengths, speed, jumps, self.bounds)
+        blends = _blend_times(speed, jumps, self.bounds)
+        return PolylineSchedule(self.start, directions, self.limits, runs, speed, blends, self.shares, self.parts)
+
+
+def _is_corner(segments: _Segments, feeds: Array) -> Bools:
+    """Which points are ends, or corners at which direction or feed changes, (n,)."""
+    change = np.abs(segments.jumps).max(axis=1)
+    aligned = (segments.turns <= ALIGNED) & (change <= ALIGNED)
+    goes_on = aligned & (feeds[:-1] == feeds[1:])
+    return np.concatenate([[True], ~goes_on, [True]])
+
+
+def _corner_caps(segments: _Segments, velocity: Array, bounds: AxisBounds, tolerance: float) -> Array:
+    """Greatest speeds of all corners, 0 at both ends, with velocity limits of the segments."""
+    by_blend = _corner_speeds(segments, bounds, tolerance)
+    by_velocity = np.minimum(velocity[:-1], velocity[1:])
+    caps = np.zeros(len(segments.lengths) + 1)
+    caps[1:-1] = np.minimum(by_blend, by_velocity)
+    return caps
+
+
+def _schedules_to_try(path: _ProgrammedPath) -> Iterator[PolylineSchedule]:
+    """Schedules of which some are faster in places than others: blends where they pay, stops, and slower blends."""
+    times = _blend_times(path.caps, path.segments.jumps, path.bounds)
+    better = _better_stop(path.segments.lengths, path.limits, path.caps, times)
+    first = path.schedule(better, np.inf)
+    yield first
+    yield path.schedule(np.ones_like(better), 0.0)
     if not better.all():
-        slower = _slower(lambda fastest: _choice(better, fastest), choices[0])
-        choices += [_choice(np.zeros_like(better), np.inf), *slower]
-    return _fastest(choices)
+        yield path.schedule(np.zeros_like(better), np.inf)
+        yield from _slower(lambda fastest: path.schedule(better, fastest), first)
 
 
 def _slower(choice: Callable[[float], PolylineSchedule], first: PolylineSchedule) -> Iterator[PolylineSchedule]:
@@ -178,11 +240,12 @@ def _slower(choice: Callable[[float], PolylineSchedule], first: PolylineSchedule
 
     Blends at their fastest leave no way to change speed between them, and the slowest holds back its neighbours.
     """
-    level, best = float(first.corners.max(initial=0.0)), _pieces([first])[1]
+    level = float(first.corners.max(initial=0.0))
+    pieces, best = _pieces([first])
     for _ in range(_LEVELS):
         level *= _LEVEL
         found = choice(level)
-        times = np.bincount(_pieces([first])[0], found.times)
+        times = np.bincount(pieces, found.times)
         if not (times < best).any():
             return
         best = np.minimum(best, times)
@@ -193,42 +256,53 @@ def _pieces(choices: Sequence[PolylineSchedule]) -> tuple[NDArray[np.int64], Arr
     """Which piece between common stops each segment belongs to, and what the first choice takes for each piece."""
     stands = np.all([choice.corners == 0 for choice in choices], axis=0)
     pieces = np.asarray(np.cumsum(stands[:-1]), dtype=np.int64) - 1
-    return pieces, np.asarray(np.bincount(pieces, choices[0].times), dtype=float)
+    times = np.bincount(pieces, choices[0].times)
+    return pieces, np.asarray(times, dtype=float)
 
 
 def _fastest(choices: Sequence[PolylineSchedule]) -> PolylineSchedule:
     """The fastest choice of each piece between stops that all choices make, put together."""
     pieces, _ = _pieces(choices)
-    best = np.argmin([np.bincount(pieces, choice.times) for choice in choices], axis=0)[pieces]
+    times = [np.bincount(pieces, choice.times) for choice in choices]
+    best_of_piece = np.argmin(times, axis=0)
+    best = best_of_piece[pieces]
     segments = np.arange(len(best))
-    runs = np.array([choice.runs for choice in choices])[best, segments]
-    corners, blends = (np.append(np.array(rows)[best, segments], 0.0)
-                       for rows in ([choice.corners[:-1] for choice in choices],
-                                    [choice.blends[:-1] for choice in choices]))
-    return replace(choices[0], runs=runs, corners=corners, blends=blends)
+    runs = np.array([choice.runs for choice in choices])
+    corners = np.array([choice.corners[:-1] for choice in choices])
+    blends = np.array([choice.blends[:-1] for choice in choices])
+    chosen_corners = np.append(corners[best, segments], 0.0)
+    chosen_blends = np.append(blends[best, segments], 0.0)
+    return replace(choices[0], runs=runs[best, segments], corners=chosen_corners, blends=chosen_blends)
 
 
-def _segments(points: Array, corners: Array) -> tuple[Array, Array, Array]:
-    """Lengths, axis motion per mm, and changes of the tip's direction at the inner corners."""
+def _segments(points: Array, corners: Array) -> _Segments:
+    """Segments between tips, with the axis positions there."""
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     if not (lengths > 0).all():
-        raise InvalidInput(f"segment {int(np.flatnonzero(~(lengths > 0))[0])} has no length: leave it out")
-    turns = np.linalg.norm(np.diff(steps / lengths[:, None], axis=0), axis=1)
-    return lengths, np.diff(corners, axis=0) / lengths[:, None], turns
+        empty = np.flatnonzero(~(lengths > 0))
+        raise InvalidInput(f"segment {int(empty[0])} has no length: leave it out")
+    ways = steps / lengths[:, None]
+    turns = np.linalg.norm(np.diff(ways, axis=0), axis=1)
+    motion = np.diff(corners, axis=0)
+    return _Segments(lengths, motion / lengths[:, None], turns)
 
 
 def _better_stop(lengths: Array, limits: tuple[Array, Array, Array], speeds: Array, times: Array) -> NDArray[np.bool_]:
     """Which inner corners take longer as blends than as stops, by the halves of their segments."""
-    speed, time = speeds[1:-1], times[1:-1]
-    stop, blend = np.zeros(len(speed)), time.copy()
+    speed = speeds[1:-1]
+    time = times[1:-1]
+    stop = np.zeros(len(speed))
+    blend = time.copy()
     feasible = np.ones(len(speed), dtype=bool)
     for side in (slice(None, -1), slice(1, None)):
-        half, (top, a, j) = lengths[side] / 2, (limit[side] for limit in limits)
+        half = lengths[side] / 2
+        top, a, j = (limit[side] for limit in limits)
         fast = np.minimum(top, reachable(0.0, half, a, j))
         left = half - speed * time / 2
         feasible &= ramp_length(speed, fast, a, j) <= left
-        stop += travel_time(half, top, a, j, (np.zeros(len(half)), fast))
+        from_rest = np.zeros(len(half))
+        stop += travel_time(half, top, a, j, (from_rest, fast))
         blend += travel_time(np.maximum(left, 0.0), top, a, j, (speed, fast))
     return np.asarray(feasible & (blend > stop))
 
@@ -236,28 +310,33 @@ def _better_stop(lengths: Array, limits: tuple[Array, Array, Array], speeds: Arr
 def _shares(jumps: Array, bounds: AxisBounds) -> tuple[Array, Array]:
     """Factors of a blend's least time: jerk asks for the first times the root of speed, acceleration for the second."""
     sizes = np.abs(jumps)
-    return 2 * np.sqrt((sizes / bounds.jerk).max(axis=1)), 2 * (sizes / bounds.acceleration).max(axis=1)
+    jerk = (sizes / bounds.jerk).max(axis=1)
+    acceleration = (sizes / bounds.acceleration).max(axis=1)
+    return 2 * np.sqrt(jerk), 2 * acceleration
 
 
-def _corner_speeds(jumps: Array, turns: Array, lengths: Array, bounds: AxisBounds, tolerance: float) -> Array:
+def _corner_speeds(segments: _Segments, bounds: AxisBounds, tolerance: float) -> Array:
     """Greatest speed of each inner corner that keeps its blend within tolerance and half the neighbours."""
-    by_jerk, by_acceleration = _shares(jumps, bounds)
+    lengths, _, turns = segments
+    by_jerk, by_acceleration = _shares(segments.jumps, bounds)
     room = np.minimum(lengths[:-1], lengths[1:])
     cut = np.where(turns <= STRAIGHT, max(tolerance, STRAIGHT), tolerance)
-    speeds = np.full(len(jumps), np.inf)
-    with np.errstate(divide="ignore"):
-        for size, most in ((turns / 12, cut), (np.ones(len(jumps)), room)):
-            for factor, power in ((by_jerk, 2 / 3), (by_acceleration, 1 / 2)):
-                weight = size * factor
-                most_here = (most / np.where(weight > 0, weight, 1.0)) ** power
-                speeds = np.minimum(speeds, np.where(weight > 0, most_here, np.inf))
+    speeds = np.full(len(turns), np.inf)
+    for size, most in ((turns / 12, cut), (np.ones(len(turns)), room)):
+        for factor, power in ((by_jerk, 2 / 3), (by_acceleration, 1 / 2)):
+            weight = size * factor
+            counts = weight > 0
+            with np.errstate(divide="ignore"):
+                fastest = (most / np.where(counts, weight, 1.0)) ** power
+            speeds = np.minimum(speeds, np.where(counts, fastest, np.inf))
     return np.asarray(speeds)
 
 
 def _blend_times(speeds: Array, jumps: Array, bounds: AxisBounds) -> Array:
-    times = np.zeros(len(speeds))
+    inner = speeds[1:-1]
     by_jerk, by_acceleration = _shares(jumps, bounds)
-    times[1:-1] = np.maximum(by_jerk * np.sqrt(speeds[1:-1]), by_acceleration * speeds[1:-1])
+    times = np.zeros(len(speeds))
+    times[1:-1] = np.maximum(by_jerk * np.sqrt(inner), by_acceleration * inner)
     return times
 
 

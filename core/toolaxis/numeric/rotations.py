@@ -49,10 +49,15 @@ def rotate_vectors(vectors: ArrayLike, axis: ArrayLike, angles: ArrayLike) -> Ar
     angles : (n,) array_like
         rad, right-handed.
     """
-    rows, d = np.asarray(vectors, dtype=float), np.asarray(axis, dtype=float)
+    rows = np.asarray(vectors, dtype=float)
+    d = np.asarray(axis, dtype=float)
     turn = np.asarray(angles, dtype=float)[..., None]
-    along = (rows @ d)[..., None] * d
-    return np.asarray(along + np.cos(turn) * (rows - along) + np.sin(turn) * np.cross(d, rows))
+    heights = rows @ d
+    along = heights[..., None] * d
+    level = rows - along
+    ahead = np.cross(d, rows)
+    turned = along + np.cos(turn) * level + np.sin(turn) * ahead
+    return np.asarray(turned)
 
 
 def across(vectors: Array, axis: Array) -> Array:
@@ -63,7 +68,9 @@ def across(vectors: Array, axis: Array) -> Array:
     vectors : (n, 3) array
     axis : (3,) array
     """
-    return np.asarray(vectors - (vectors @ axis)[..., None] * axis)
+    heights = vectors @ axis
+    along = heights[..., None] * axis
+    return np.asarray(vectors - along)
 
 
 def turn_between(start: Array, end: Array, axis: Array) -> Array:
@@ -77,8 +84,11 @@ def turn_between(start: Array, end: Array, axis: Array) -> Array:
     axis : (3,) array
         Unit vector.
     """
-    u, v = across(start, axis), across(end, axis)
-    return np.asarray(np.arctan2(np.cross(u, v) @ axis, dot(u, v)))
+    u = across(start, axis)
+    v = across(end, axis)
+    sine = np.cross(u, v) @ axis
+    cosine = dot(u, v)
+    return np.asarray(np.arctan2(sine, cosine))
 
 
 def one_turn(axis: ArrayLike, start: ArrayLike, target: ArrayLike) -> tuple[Array, Bools, Bools]:
@@ -96,12 +106,27 @@ def one_turn(axis: ArrayLike, start: ArrayLike, target: ArrayLike) -> tuple[Arra
     reached, free : (n,) array of bool
         Whether it gets there, and whether any turn would do.
     """
-    a, k, t = unit(axis), unit(as_rows(start, 3, "direction")), unit(as_rows(target, 3, "direction"))
-    k, t = np.broadcast_arrays(k, t)
+    a = unit(axis)
+    k, t = _pair_directions(start, target)
     angles = turn_between(k, t, a)
-    reached = angle_between(rotate_vectors(k, a, angles), t) <= ROUNDING
-    free = (np.linalg.norm(across(t, a), axis=1) <= ON_AXIS) & (np.linalg.norm(across(k, a), axis=1) <= ON_AXIS)
+    turned = rotate_vectors(k, a, angles)
+    reached = angle_between(turned, t) <= ROUNDING
+    free = _lies_on(t, a) & _lies_on(k, a)
     return np.where(free, 0.0, angles), reached, free
+
+
+def _pair_directions(start: ArrayLike, target: ArrayLike) -> tuple[Array, Array]:
+    """Unit vectors of two directions, or of n pairs of them, (n, 3) each."""
+    begins = unit(as_rows(start, 3, "direction"))
+    ends = unit(as_rows(target, 3, "direction"))
+    begins, ends = np.broadcast_arrays(begins, ends)
+    return begins, ends
+
+
+def _lies_on(directions: Array, axis: Array) -> Bools:
+    """Whether directions lie on an axis, so that no turn about it moves them."""
+    distances = np.linalg.norm(across(directions, axis), axis=1)
+    return np.asarray(distances <= ON_AXIS)
 
 
 def two_turns(first: ArrayLike, second: ArrayLike, start: ArrayLike, target: ArrayLike) -> Turns:
@@ -126,23 +151,36 @@ def two_turns(first: ArrayLike, second: ArrayLike, start: ArrayLike, target: Arr
     Properties: (1) turning the start by a reached solution gives the target to 1e-12 rad, on the axis of the first turn
     and close to it too; (2) there are no other solutions.
     """
-    a, b = unit(first), unit(second)
-    k, t = unit(as_rows(start, 3, "direction")), unit(as_rows(target, 3, "direction"))
-    k, t = np.broadcast_arrays(k, t)
-    ab, bk, at = angle_between(a, b), angle_between(k, b), angle_between(t, a)
-    half = (ab + bk + at) / 2
-    gaps = np.stack([half - ab, half - bk, half - at, np.pi - half])
-    reached = (gaps >= -ROUNDING).all(axis=0)
-    sines = np.sin(np.maximum(gaps, 0.0))
-    corner = 2 * np.arctan2(np.sqrt(sines[0] * sines[1]), np.sqrt(sines[2] * sines[3]))
-    begin = turn_between(np.broadcast_to(a, k.shape), k, b)
-    free = np.linalg.norm(across(t, a), axis=1) <= ON_AXIS
+    a = unit(first)
+    b = unit(second)
+    k, t = _pair_directions(start, target)
+    ab = angle_between(a, b)
+    bk = angle_between(k, b)
+    at = angle_between(t, a)
+    corner, reached = _corner_between(ab, bk, at)
+    first_axes = np.broadcast_to(a, k.shape)
+    begin = turn_between(first_axes, k, b)
+    free = _lies_on(t, a)
     angles = np.empty((len(t), 2, 2))
     for branch, sign in enumerate((1.0, -1.0)):
-        turn = wrap_to_pi(sign * corner - begin)
-        angles[:, branch, 1] = turn
-        angles[:, branch, 0] = np.where(free, 0.0, turn_between(rotate_vectors(k, b, turn), t, a))
-    return Turns(angles, np.asarray(reached), free, np.abs(np.sin(ab) * np.sin(bk) * np.sin(corner)))
+        second_turn = wrap_to_pi(sign * corner - begin)
+        halfway = rotate_vectors(k, b, second_turn)
+        first_turn = turn_between(halfway, t, a)
+        angles[:, branch, 1] = second_turn
+        angles[:, branch, 0] = np.where(free, 0.0, first_turn)
+    volume = np.sin(ab) * np.sin(bk) * np.sin(corner)
+    return Turns(angles, reached, free, np.abs(volume))
+
+
+def _corner_between(one: Array, other: Array, opposite: Array) -> tuple[Array, Bools]:
+    """The angle between two sides of a spherical triangle, and whether three such sides make one."""
+    half = (one + other + opposite) / 2
+    gaps = np.stack([half - one, half - other, half - opposite, np.pi - half])
+    exists = (gaps >= -ROUNDING).all(axis=0)
+    s_one, s_other, s_opposite, s_half = np.sin(np.maximum(gaps, 0.0))
+    sine = np.sqrt(s_one * s_other)
+    cosine = np.sqrt(s_opposite * s_half)
+    return 2 * np.arctan2(sine, cosine), np.asarray(exists)
 
 
 def wrap_to_pi(angles: ArrayLike) -> Array:
@@ -154,4 +192,5 @@ def wrap_to_pi(angles: ArrayLike) -> Array:
         rad.
     """
     values = np.asarray(angles, dtype=float)
-    return np.asarray(values - 2 * np.pi * np.round(values / (2 * np.pi)))
+    turns = np.round(values / (2 * np.pi))
+    return np.asarray(values - 2 * np.pi * turns)

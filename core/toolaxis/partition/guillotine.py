@@ -53,31 +53,54 @@ def offers(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], 
     extra : (k, nu, nv) array, optional
         What each cell costs besides: what is left as rest material.
     """
-    nu, nv = rates.shape[2] - 1, rates.shape[3] - 1
-    pairs_u, pairs_v = np.triu_indices(nu + 1, 1), np.triu_indices(nv + 1, 1)
-    shape = (len(pairs_u[0]), len(pairs_v[0]))
+    nu = rates.shape[2] - 1
+    nv = rates.shape[3] - 1
+    first_u, last_u = np.triu_indices(nu + 1, 1)
+    first_v, last_v = np.triu_indices(nv + 1, 1)
+    shape = (len(first_u), len(first_v))
     cost = np.full(shape, _TOO_MUCH)
-    axis, feed = np.zeros(shape, dtype=np.intp), np.zeros(shape, dtype=np.intp)
+    axis = np.zeros(shape, dtype=np.intp)
+    feed = np.zeros(shape, dtype=np.intp)
+    best = BestCosts(cost, axis, feed)
     across = gaps[0], gaps[1].swapaxes(1, 2)
     for first in range(0, len(rates), _CHUNK):
         part = slice(first, first + _CHUNK)
-        rows = [_rows(one if len(one) == 1 else one[part], ends) for one in across]
+        rows = [_rows(_of_axes(one, part), ends) for one in across]
         for number in (0, 1):
-            if number == 0:
-                table = _lengths(rates[part, 0], rows[0], pitch[1])
-            else:
-                table = _lengths(rates[part, 1].swapaxes(1, 2), rows[1], pitch[0]).swapaxes(1, 2)
+            table = _feed_prices(rates[part, number], rows, pitch, number)
             if extra is not None and extra[part].any():
                 table = table + _boxes(extra[part])
-            # numpy's argmin over the first axis takes several times as long.
-            for k, one in enumerate(table):
-                better = one < cost
-                cost[better] = one[better]
-                axis[better], feed[better] = first + k, number
-    corners, lines = (pairs_u[0][:, None], pairs_u[1][:, None], *pairs_v), (nu + 1, nu + 1, nv + 1, nv + 1)
-    return BestCosts(_spread_out(np.where(cost < _TOO_MUCH, cost, np.inf), corners, np.full(lines, np.inf)),
-                     _spread_out(axis, corners, np.zeros(lines, dtype=np.intp)),
-                     _spread_out(feed, corners, np.zeros(lines, dtype=np.intp)))
+            _keep_cheaper(best, table, first, number)
+    corners = first_u[:, None], last_u[:, None], first_v, last_v
+    lines = (nu + 1, nu + 1, nv + 1, nv + 1)
+    price = np.where(cost < _TOO_MUCH, cost, np.inf)
+    whole_cost = _spread_out(price, corners, np.full(lines, np.inf))
+    whole_axis: Index = _spread_out(axis, corners, np.zeros(lines, dtype=np.intp))
+    whole_feed: Index = _spread_out(feed, corners, np.zeros(lines, dtype=np.intp))
+    return BestCosts(whole_cost, whole_axis, whole_feed)
+
+
+def _of_axes(gaps: Array, part: slice) -> Array:
+    """What some axes' passes cost between nodes: one row where it is the same with all."""
+    return gaps if len(gaps) == 1 else gaps[part]
+
+
+def _feed_prices(rates: Array, rows: list[Array], pitch: tuple[Array, Array], feed: int) -> Array:
+    """What all rectangles cost with one feed, (k, pairs along u, pairs along v)."""
+    if feed == 0:
+        return _lengths(rates, rows[0], pitch[1])
+    turned = _lengths(rates.swapaxes(1, 2), rows[1], pitch[0])
+    return np.asarray(turned.swapaxes(1, 2))
+
+
+def _keep_cheaper(best: BestCosts, prices: Array, first: int, feed: int) -> None:
+    """Put axes from a first one on, with one feed, where they are cheaper than what is there."""
+    # numpy's argmin over the first axis takes several times as long.
+    for k, price in enumerate(prices):
+        better = price < best.cost
+        best.cost[better] = price[better]
+        best.axis[better] = first + k
+        best.feed[better] = feed
 
 
 def _spread_out(values: Values, corners: tuple[Index, ...], table: Values) -> Values:
@@ -88,9 +111,11 @@ def _spread_out(values: Values, corners: tuple[Index, ...], table: Values) -> Va
 
 def _boxes(cells: Array) -> Array:
     """Sums over all rectangles of cells (k, nu, nv), (k, pairs along u, pairs along v)."""
-    total = np.pad(np.cumsum(np.cumsum(cells, axis=1), axis=2), ((0, 0), (1, 0), (1, 0)))
+    sums = np.cumsum(np.cumsum(cells, axis=1), axis=2)
+    total = np.pad(sums, ((0, 0), (1, 0), (1, 0)))
     first, last = np.triu_indices(total.shape[1], 1)
-    return _between(total[:, last] - total[:, first])
+    between_lines = total[:, last] - total[:, first]
+    return _between(between_lines)
 
 
 def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array], ends: float = 0.0,
@@ -105,11 +130,16 @@ def each_axis(rates: Array, gaps: tuple[Array, Array], pitch: tuple[Array, Array
     both = []
     for along, step in ((0, 1), (1, 0)):
         most = rates[:, along].max(axis=1 + along)
-        row = _rectangle_ends(gaps[along].sum(axis=1 + along), ends)
-        middle = (most[:, 1:] * row[:, 1:] + most[:, :-1] * row[:, :-1]) / 2
-        cost = (middle * pitch[step]).sum(axis=1) + row.mean(axis=1) / 2
-        cost += 0.0 if extra is None else extra.sum(axis=(1, 2))
-        usable = (most.max(axis=1) < _TOO_MUCH) & ((middle * pitch[step]).sum(axis=1) > _NONE)
+        whole = gaps[along].sum(axis=1 + along)
+        row = _rectangle_ends(whole, ends)
+        prices = most * row
+        middle = (prices[:, 1:] + prices[:, :-1]) / 2
+        passes = (middle * pitch[step]).sum(axis=1)
+        cost = passes + row.mean(axis=1) / 2
+        if extra is not None:
+            cost += extra.sum(axis=(1, 2))
+        is_allowed = most.max(axis=1) < _TOO_MUCH
+        usable = is_allowed & (passes > _NONE)
         both.append(np.where(usable, cost, np.inf))
     return np.stack(both, axis=1)
 
@@ -122,14 +152,19 @@ def proper(nu: int, nv: int) -> NDArray[np.bool_]:
     nu, nv : int
         Cells of the lattice.
     """
-    u, v = np.arange(nu + 1), np.arange(nv + 1)
-    return np.asarray((u[:, None] < u)[:, :, None, None] & (v[:, None] < v))
+    u = np.arange(nu + 1)
+    v = np.arange(nv + 1)
+    rising_u = u[:, None] < u
+    rising_v = v[:, None] < v
+    return np.asarray(rising_u[:, :, None, None] & rising_v)
 
 
 def _rows(gaps: Array, ends: float) -> Array:
     """What passes over all ranges along cost, (1 or k, first, last, step); 0 off the face."""
-    total = np.concatenate([np.zeros((len(gaps), 1, gaps.shape[2])), np.cumsum(gaps, axis=1)], axis=1)
-    return _rectangle_ends(total[:, None] - total[:, :, None], ends)
+    begin = np.zeros((len(gaps), 1, gaps.shape[2]))
+    total = np.concatenate([begin, np.cumsum(gaps, axis=1)], axis=1)
+    ranges = total[:, None] - total[:, :, None]
+    return _rectangle_ends(ranges, ends)
 
 
 def _rectangle_ends(rows: Array, ends: float) -> Array:
@@ -141,20 +176,33 @@ def _lengths(rates: Array, rows: Array, pitch: Array) -> Array:
 
     rates (k, along, step);  rows (1 or k, first, last, step);  pitch (step - 1).
     """
-    k, na, ns = rates.shape
-    first, last = np.triu_indices(na, 1)
+    ns = rates.shape[2]
+    first, last = np.triu_indices(rates.shape[1], 1)
     rows = rows[:, first, last]
-    table = np.empty((k, len(first), ns))
-    for a in range(na - 1):
-        table[:, first == a] = np.maximum.accumulate(rates[:, a:], axis=1)[:, 1:]
-    table = np.where(table < _TOO_MUCH, table * rows, _TOO_MUCH)
-    bad = np.maximum(table[..., 1:], table[..., :-1]) >= _TOO_MUCH
-    middle = np.where(bad, _TOO_MUCH, (table[..., 1:] + table[..., :-1]) / 2 * pitch)
+    rate = _greatest_in_ranges(rates)
+    table = np.where(rate < _TOO_MUCH, rate * rows, _TOO_MUCH)
+    before = table[..., :-1]
+    behind = table[..., 1:]
+    bad = np.maximum(behind, before) >= _TOO_MUCH
+    middle = np.where(bad, _TOO_MUCH, (behind + before) / 2 * pitch)
+    begin = np.zeros((*middle.shape[:2], 1))
+    passes = _between(np.concatenate([begin, np.cumsum(middle, axis=-1)], axis=-1))
     low, high = np.triu_indices(ns, 1)
     sums = np.cumsum(np.insert(rows, 0, 0.0, axis=-1), axis=-1)
     mean = (sums[..., high + 1] - sums[..., low]) / (high - low + 1)
-    passes = _between(np.concatenate([np.zeros((k, len(first), 1)), np.cumsum(middle, axis=-1)], axis=-1))
-    return np.asarray(np.where(passes > _NONE, passes + mean / 2, _TOO_MUCH))
+    half_a_pass = mean / 2
+    return np.asarray(np.where(passes > _NONE, passes + half_a_pass, _TOO_MUCH))
+
+
+def _greatest_in_ranges(rates: Array) -> Array:
+    """The greatest rate of all ranges along, (k, pairs along, step)."""
+    k, na, ns = rates.shape
+    first, _ = np.triu_indices(na, 1)
+    table = np.empty((k, len(first), ns))
+    for a in range(na - 1):
+        greatest = np.maximum.accumulate(rates[:, a:], axis=1)
+        table[:, first == a] = greatest[:, 1:]
+    return table
 
 
 def _between(total: Array) -> Array:

@@ -41,7 +41,8 @@ def screening_cutter(tool: Tool, scallop: float, allowance: float = 0.0) -> Cutt
     CutterParameters
     """
     corner = max(tool.corner_radius, min(_BLUNT * scallop, tool.radius))
-    return cutter_parameters(tool, scallop, allowance)._replace(flat=tool.radius - corner, corner=corner)
+    sharp = cutter_parameters(tool, scallop, allowance)
+    return sharp._replace(flat=tool.radius - corner, corner=corner)
 
 
 def lean_table(tool: Tool, scallop: float) -> Array:
@@ -66,19 +67,37 @@ def lean_table(tool: Tool, scallop: float) -> Array:
 def _table(kind: str, radius: float, corner_radius: float, half_angle: float, scallop: float) -> Array:
     tool = Tool.build(kind, radius, corner_radius, half_angle)
     size = 40 * tool.radius
-    corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
-    plane = Face.from_bspline(corners, (1, 1))
-    dense = np.linspace(0, 1, 20001) ** 2
-    sine = np.interp(np.linspace(0, 1, _LEANS), [_place(float(s)) for s in dense], dense).clip(_LEAST, _MOST)
-    s, c = (part.ravel() for part in np.meshgrid(sine, np.linspace(0, 1, _TURNS) ** 2, indexing="ij"))
+    sine, across = _grid_of_leans()
+    s = sine.ravel()
+    c = across.ravel()
     k = np.sqrt(1 - c**2)
     axes = np.column_stack([s * c, s * k, np.sqrt(1 - s**2)])
-    exact = size * step_widths(plane, tool, np.full((len(s), 2), 0.5), axes, scallop).sum(axis=1)
-    bottom, corner = screening_cutter(tool, scallop)[:2]
-    second = 2 * np.sqrt(2 * scallop * (corner + bottom * c**2 / s))
+    middle = np.full((len(s), 2), 0.5)
+    shares = step_widths(_square(size), tool, middle, axes, scallop)
+    exact = size * shares.sum(axis=1)
+    blunt = screening_cutter(tool, scallop)
+    curvature_radius = blunt.corner + blunt.flat * c**2 / s
+    second = 2 * np.sqrt(2 * scallop * curvature_radius)
     table = np.where(exact > 0, exact / second, 1.0).reshape(_LEANS, _TURNS)
     table.setflags(write=False)
     return table
+
+
+def _square(size: float) -> Face:
+    """A plane face with sides of one length."""
+    corners = np.array([[[0, 0, 0], [0, size, 0]], [[size, 0, 0], [size, size, 0]]], dtype=float)
+    return Face.from_bspline(corners, (1, 1))
+
+
+def _grid_of_leans() -> tuple[Array, Array]:
+    """Sines between axis and normal, and cosines between lean and feed, at the table's places, (41, 17) each."""
+    dense = np.linspace(0, 1, 20001) ** 2
+    places = [_place(float(s)) for s in dense]
+    sine = np.interp(np.linspace(0, 1, _LEANS), places, dense)
+    sine = sine.clip(_LEAST, _MOST)
+    cosine = np.linspace(0, 1, _TURNS) ** 2
+    sines, cosines = np.meshgrid(sine, cosine, indexing="ij")
+    return sines, cosines
 
 
 @jit
@@ -114,12 +133,14 @@ def lean_ratios(table: Array, along: Array, across: Array) -> Array:
     """
     lean = np.hypot(along, across)
     sine = np.minimum(lean, 1.0)
-    x = 0.5 * (np.sqrt(sine) + 1 - np.sqrt(1 - sine**2)) * (table.shape[0] - 1)
+    place = 0.5 * (np.sqrt(sine) + 1 - np.sqrt(1 - sine**2))
+    x = place * (table.shape[0] - 1)
     cosine = np.abs(along) / np.where(lean > 0, lean, 1.0)
     y = np.sqrt(np.minimum(cosine, 1.0)) * (table.shape[1] - 1)
     i = np.minimum(x.astype(int), table.shape[0] - 2)
     j = np.minimum(y.astype(int), table.shape[1] - 2)
-    x, y = x - i, y - j
+    x = x - i
+    y = y - j
     low = table[i, j] * (1 - x) + table[i + 1, j] * x
     high = table[i, j + 1] * (1 - x) + table[i + 1, j + 1] * x
     return np.asarray(low * (1 - y) + high * y)
@@ -137,7 +158,9 @@ def lean_ratios_of(table: Array, forms: Array, axis: Array) -> Array:
         Unit vector.
     """
     if not _compiled.available:
-        return lean_ratios(table, forms[:, :3] @ axis, forms[:, 3:6] @ axis)
+        along = forms[:, :3] @ axis
+        across = forms[:, 3:6] @ axis
+        return lean_ratios(table, along, across)
     found = np.empty(len(forms))
     _fill_ratios(table, forms, axis, found)
     return found

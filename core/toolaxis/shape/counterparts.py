@@ -73,9 +73,10 @@ def turn_about(point: Array, axis: Array, angle: float) -> Array:
     """
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     found = np.eye(4)
-    found[:3, :3] = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-    found[:3, 3] = point - found[:3, :3] @ point
+    found[:3, :3] = turn
+    found[:3, 3] = point - turn @ point
     return found
 
 
@@ -102,9 +103,11 @@ def counterpart(face: Face, matrix: Array, others: Sequence[Face]) -> Counterpar
     uv = places_of(face, _GRID)
     points = apply_motion(matrix, face.evaluate(uv).point)
     corners = np.array([points.min(axis=0), points.max(axis=0)])
-    close = [other for other in others if np.abs(other.box - corners).max() <= _CLOSE * face.diagonal]
-    for how in (_counterpart_by_parameters, _counterpart_by_nearest_points):
-        found = [one for one in (how(face, uv, points, other) for other in close) if one is not None]
+    room = _CLOSE * face.diagonal
+    close = [other for other in others if np.abs(other.box - corners).max() <= room]
+    for match in (_counterpart_by_parameters, _counterpart_by_nearest_points):
+        tried = [match(face, uv, points, other) for other in close]
+        found = [one for one in tried if one is not None]
         if found:
             return min(found, key=lambda one: one.away)
     return None
@@ -120,18 +123,28 @@ def places_of(face: Face, count: int) -> Array:
         Places each way; about four times as many lie on the border.
     """
     border = np.concatenate(face.outline)
-    return np.concatenate([face.grid(count, count), border[::max(1, len(border) // (4 * count))]])
+    stride = max(1, len(border) // (4 * count))
+    return np.concatenate([face.grid(count, count), border[::stride]])
 
 
 def _counterpart_by_parameters(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
     """Another face as the counterpart, where one of the eight ways to lay their parameters onto each other fits."""
     charts = eight_rules(face.surface.domain, other.surface.domain)
-    away = [float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max()) for chart in charts]
+    away = [_greatest_distance(other, chart(uv), points) for chart in charts]
     k = int(np.argmin(away))
+    if away[k] > NEAR * face.diagonal:
+        return None
     inner = face.grid(_GRID, _GRID)
-    if away[k] > NEAR * face.diagonal or other.contains(charts[k](inner)).sum() < 0.9 * len(inner):
+    on_other = other.contains(charts[k](inner))
+    if on_other.sum() < 0.9 * len(inner):
         return None
     return Counterpart(other, charts[k], away[k])
+
+
+def _greatest_distance(face: Face, uv: Array, points: Array) -> float:
+    """How far places of a face lie from points at most, mm."""
+    gap = face.evaluate(uv).point - points
+    return float(np.linalg.norm(gap, axis=1).max())
 
 
 def _counterpart_by_nearest_points(face: Face, uv: Array, points: Array, other: Face) -> Counterpart | None:
@@ -141,10 +154,12 @@ def _counterpart_by_nearest_points(face: Face, uv: Array, points: Array, other: 
     if distance > NEAR * face.diagonal:
         return None
     table = np.column_stack([uv, np.ones(len(uv))])
-    fit: Array = np.asarray(np.linalg.lstsq(table, found.uv, rcond=None)[0], dtype=float)
+    solution, *_ = np.linalg.lstsq(table, found.uv, rcond=None)
+    fit: Array = np.asarray(solution, dtype=float)
     chart = ParameterRule(fit[:2], fit[2])
-    off = float(np.linalg.norm(other.evaluate(chart(uv)).point - points, axis=1).max())
-    return Counterpart(other, chart if off <= distance + _AGREE * face.diagonal else None, distance)
+    away = _greatest_distance(other, chart(uv), points)
+    is_straight = away <= distance + _AGREE * face.diagonal
+    return Counterpart(other, chart if is_straight else None, distance)
 
 
 def eight_rules(here: tuple[tuple[float, float], ...], there: tuple[tuple[float, float], ...]) -> list[ParameterRule]:
@@ -158,12 +173,16 @@ def eight_rules(here: tuple[tuple[float, float], ...], there: tuple[tuple[float,
     found = []
     for swap in (False, True):
         for senses in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
-            linear, offset = np.zeros((2, 2)), np.zeros(2)
+            linear = np.zeros((2, 2))
+            offset = np.zeros(2)
             for i, (low, high) in enumerate(here):
                 j = 1 - i if swap else i
-                start, stop = there[j] if senses[i] > 0 else there[j][::-1]
-                linear[i, j] = (stop - start) / (high - low)
-                offset[j] = start - low * linear[i, j]
+                start, stop = there[j]
+                if senses[i] < 0:
+                    start, stop = stop, start
+                rate = (stop - start) / (high - low)
+                linear[i, j] = rate
+                offset[j] = start - low * rate
             found.append(ParameterRule(linear, offset))
     return found
 
@@ -177,7 +196,8 @@ def best_motion(matrix: Array, pairs: Sequence[tuple[Face, Counterpart]]) -> Arr
         Nearly that motion; the answer where no counterpart has a chart.
     pairs : sequence of (Face, Counterpart)
     """
-    here, there = [], []
+    here = []
+    there = []
     for face, other in pairs:
         if other.chart is not None:
             uv = face.grid(_GRID, _GRID)
@@ -198,12 +218,16 @@ def fit_motion(here: Array, there: Array, mirrored: bool = False) -> Array:
     mirrored : bool
         Whether it is one with a mirror.
     """
-    own, others = here.mean(axis=0), there.mean(axis=0)
+    own = here.mean(axis=0)
+    others = there.mean(axis=0)
     u, _, vt = np.linalg.svd((here - own).T @ (there - others))
     side = np.sign(np.linalg.det(vt.T @ u.T))
-    turn = (vt.T * [1, 1, -side if mirrored else side]) @ u.T
+    if mirrored:
+        side = -side
+    turn = (vt.T * [1, 1, side]) @ u.T
     found = np.eye(4)
-    found[:3, :3], found[:3, 3] = turn, others - turn @ own
+    found[:3, :3] = turn
+    found[:3, 3] = others - turn @ own
     return found
 
 
@@ -220,8 +244,10 @@ def off(face: Face, other: Counterpart, matrix: Array) -> float:
     assert other.chart is not None
     uv = places_of(face, _DENSE)
     there = other.chart(uv)
-    gap = other.face.evaluate(there).point - apply_motion(matrix, face.evaluate(uv).point)
-    return float(np.abs((gap * other.face.normal(there)).sum(axis=1)).max())
+    moved = apply_motion(matrix, face.evaluate(uv).point)
+    gap = other.face.evaluate(there).point - moved
+    along_normal = (gap * other.face.normal(there)).sum(axis=1)
+    return float(np.abs(along_normal).max())
 
 
 def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, label: str) -> tuple[Face, float]:
@@ -242,16 +268,26 @@ def turn_piece(piece: Face, whole: Face, other: Counterpart, matrix: Array, labe
     whatever its loops are made of; any other piece takes its loops along.
     """
     target = other.face
-    if other.chart is None:
-        loops = tuple(nearest(target, apply_motion(matrix, piece.evaluate(refine_loop(loop)).point)).uv
-                      for loop in piece.outline)
-        made = target.trimmed(loops, label)
-        uv = places_of(piece, _DENSE)
-        return made, float(nearest(target, apply_motion(matrix, piece.evaluate(uv).point)).distance.max())
-    found = target if piece is whole else target.trimmed(_loops(piece, whole, target, other.chart), label)
     uv = places_of(piece, _DENSE)
-    gap = target.evaluate(other.chart(uv)).point - apply_motion(matrix, piece.evaluate(uv).point)
-    return found.trimmed(found.trims, label), float(np.linalg.norm(gap, axis=1).max())
+    moved = apply_motion(matrix, piece.evaluate(uv).point)
+    if other.chart is None:
+        made = target.trimmed(_carry_loops(piece, target, matrix), label)
+        return made, float(nearest(target, moved).distance.max())
+    found = target
+    if piece is not whole:
+        found = target.trimmed(_loops(piece, whole, target, other.chart), label)
+    distance = _greatest_distance(target, other.chart(uv), moved)
+    return found.trimmed(found.trims, label), distance
+
+
+def _carry_loops(piece: Face, target: Face, matrix: Array) -> tuple[Array, ...]:
+    """Loops of a piece, carried by a motion onto another face."""
+    loops = []
+    for loop in piece.outline:
+        points = piece.evaluate(refine_loop(loop)).point
+        moved = apply_motion(matrix, points)
+        loops.append(nearest(target, moved).uv)
+    return tuple(loops)
 
 
 def refine_loop(loop: Array) -> Array:
@@ -261,9 +297,11 @@ def refine_loop(loop: Array) -> Array:
     ----------
     loop : (m, 2) array
     """
-    share = np.linspace(0, 1, max(1, 64 // len(loop)), endpoint=False)[:, None, None]
+    parts = max(1, 64 // len(loop))
+    share = np.linspace(0, 1, parts, endpoint=False)[:, None, None]
     following = np.roll(loop, -1, axis=0)
-    return np.asarray((loop + share * (following - loop)).swapaxes(0, 1).reshape(-1, 2))
+    places = loop + share * (following - loop)
+    return np.asarray(places.swapaxes(0, 1).reshape(-1, 2))
 
 
 def _loops(piece: Face, whole: Face, target: Face, chart: ParameterRule) -> tuple[Array, ...]:
@@ -273,24 +311,31 @@ def _loops(piece: Face, whole: Face, target: Face, chart: ParameterRule) -> tupl
     for i, value, above in _cuts(piece, whole):
         source = clip_half_plane(source, i, value, above)
         j = 1 - i if chart.swapped else i
-        loops = clip_half_plane(loops, j, float(chart(np.full((1, 2), value))[0, j]), above == (chart.linear[i, j] > 0))
+        there = chart(np.full((1, 2), value))
+        is_growing = chart.linear[i, j] > 0
+        loops = clip_half_plane(loops, j, float(there[0, j]), above == is_growing)
     pieces = outer_with_holes(loops)
-    if len(pieces) == len(outer_with_holes(source)) == 1 and abs(_area(source) / _area(piece.outline) - 1) < 1e-4:
-        return pieces[0]
+    if len(pieces) == len(outer_with_holes(source)) == 1:
+        ratio = _area(source) / _area(piece.outline)
+        if abs(ratio - 1) < 1e-4:
+            return pieces[0]
     return tuple(chart(loop) for loop in piece.outline)
 
 
 def _cuts(piece: Face, whole: Face) -> list[tuple[int, float, bool]]:
     """Iso-parametric lines that a piece was cut along: parameter, its value, and whether the piece lies above it."""
-    bounds, ends = np.reshape(piece.bounds, (2, 2)), np.reshape(whole.bounds, (2, 2))
+    bounds = np.reshape(piece.bounds, (2, 2))
+    ends = np.reshape(whole.bounds, (2, 2))
     corners = np.concatenate(piece.outline)
     found = []
     for i in range(2):
         near = _AT_END * np.ptp(ends[i])
         for side in range(2):
-            on = np.abs(corners[:, i] - bounds[i, side]) <= near
-            if abs(bounds[i, side] - ends[i, side]) > near and on.sum() > 1:
-                found.append((i, float(bounds[i, side]), side == 0))
+            value = bounds[i, side]
+            on = np.abs(corners[:, i] - value) <= near
+            is_inside = abs(value - ends[i, side]) > near
+            if is_inside and on.sum() > 1:
+                found.append((i, float(value), side == 0))
     return found
 
 

@@ -15,6 +15,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.numeric.vectors import as_rows
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 #: A section is open where its ends are farther apart than so many of its steps, and than this share of its length.
 _STEPS, _SHARE = 3.0, 0.02
@@ -56,8 +57,9 @@ class Section:
         ----------
         first : int
         """
-        count = len(self.points) - 1
-        return _make_section(np.roll(self.points[:count], -(first % count), axis=0))
+        distinct = self.points[:-1]
+        begin = first % len(distinct)
+        return _make_section(np.roll(distinct, -begin, axis=0))
 
 
 def section(points: ArrayLike, place: str = "section") -> Section:
@@ -76,7 +78,9 @@ def section(points: ArrayLike, place: str = "section") -> Section:
         When it is open, crosses itself or has fewer than eight points.
     """
     rows = as_rows(points, 2, f"points of {place}")
-    rows = rows[np.concatenate([[True], (np.diff(rows, axis=0) != 0).any(axis=1)])]
+    moves = (np.diff(rows, axis=0) != 0).any(axis=1)
+    is_new = np.concatenate([[True], moves])
+    rows = rows[is_new]
     if len(rows) > 1 and (rows[0] == rows[-1]).all():
         rows = rows[:-1]
     if len(rows) < 8:
@@ -84,50 +88,79 @@ def section(points: ArrayLike, place: str = "section") -> Section:
     _check_closed(rows, place)
     _check_simple(rows, place)
     x, y = rows.T
-    area = float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
-    return _make_section(rows if area > 0 else np.concatenate([rows[:1], rows[:0:-1]]))
+    twice_area = x * np.roll(y, -1) - y * np.roll(x, -1)
+    if not float(twice_area.sum()) > 0:
+        rows = np.concatenate([rows[:1], rows[:0:-1]])
+    return _make_section(rows)
 
 
 def _make_section(rows: Array) -> Section:
     closed = np.concatenate([rows, rows[:1]])
     step = np.diff(closed, axis=0)
     angle = np.arctan2(step[:, 1], step[:, 0])
-    turn = (np.diff(angle, append=angle[:1]) + pi) % (2 * pi) - pi
-    ahead = angle[0] + np.concatenate([[0.0], np.cumsum(turn)])
-    behind = np.concatenate([[ahead[-2] - 2 * pi], ahead[:-1]])
+    turn = np.diff(angle, append=angle[:1])
+    turn = (turn + pi) % (2 * pi) - pi
+    turned = np.concatenate([[0.0], np.cumsum(turn)])
+    ahead = angle[0] + turned
+    before_first = ahead[-2] - 2 * pi
+    behind = np.concatenate([[before_first], ahead[:-1]])
     size = np.hypot(step[:, 0], step[:, 1])
     lengths = np.concatenate([[0.0], np.cumsum(size)])
     return Section(closed, lengths, ahead, behind)
 
 
 def _check_closed(rows: Array, place: str) -> None:
-    step = np.hypot(*np.diff(rows, axis=0).T)
+    along_x, along_y = np.diff(rows, axis=0).T
+    step = np.hypot(along_x, along_y)
     gap = float(np.hypot(*(rows[-1] - rows[0])))
-    if gap > max(_STEPS * float(step.max()), _SHARE * float(step.sum())):
+    by_steps = _STEPS * float(step.max())
+    by_length = _SHARE * float(step.sum())
+    if gap > max(by_steps, by_length):
         raise InvalidInput(f"{place} is open: its ends are {gap:.3f} mm apart at {np.round(rows[0], 3).tolist()}; "
                            "close it, or choose faces that go all around the blade")
 
 
 def _check_simple(rows: Array, place: str) -> None:
     """That no two segments cross, pieces of the section first."""
-    a, b = rows, np.roll(rows, -1, axis=0)
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    edges = np.arange(0, len(rows), _CHUNK)
-    low, high = np.minimum.reduceat(low, edges), np.maximum.reduceat(high, edges)
-    near = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(axis=2)
-    i, j = np.nonzero(np.triu(near))
-    own = np.minimum(edges[:, None] + np.arange(_CHUNK), len(rows) - 1)
-    one, other = own[i][:, :, None], own[j][:, None, :]
-    p, r, q, s = a[one], (b - a)[one], a[other], (b - a)[other]
-    across = _cross(r, s)
+    ends = np.roll(rows, -1, axis=0)
+    pieces = np.arange(0, len(rows), _CHUNK)
+    i, j = _pieces_that_may_cross(rows, ends, pieces)
+    segments = pieces[:, None] + np.arange(_CHUNK)
+    segments = np.minimum(segments, len(rows) - 1)
+    one = segments[i][:, :, None]
+    other = segments[j][:, None, :]
+    step = ends - rows
+    crosses = _cross_inside(rows[one], step[one], rows[other], step[other])
     gap = np.abs(one - other)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t, u = _cross(q - p, s) / across, _cross(q - p, r) / across
-    found = np.argwhere((gap > 1) & (gap < len(rows) - 1) & (across != 0) & (t > 0) & (t < 1) & (u > 0) & (u < 1))
+    are_neighbours = (gap <= 1) | (gap >= len(rows) - 1)
+    found = np.argwhere(crosses & ~are_neighbours)
     if len(found):
-        at = rows[own[i[found[0, 0]], found[0, 1]]]
+        pair, segment, _ = found[0]
+        at = rows[segments[i[pair], segment]]
         raise InvalidInput(f"{place} crosses itself near {np.round(at, 3).tolist()}: take {SMALLER_CUTTER} where it is "
                            "concave, or repair the section")
+
+
+def _pieces_that_may_cross(begins: Array, ends: Array, pieces: Index) -> tuple[Index, Index]:
+    """Pairs of pieces whose boxes meet; a piece is the segments from one of some numbers to the next."""
+    low = np.minimum.reduceat(np.minimum(begins, ends), pieces)
+    high = np.maximum.reduceat(np.maximum(begins, ends), pieces)
+    begins_before = low[:, None] <= high[None]
+    ends_behind = low[None] <= high[:, None]
+    near = (begins_before & ends_behind).all(axis=2)
+    one, other = np.nonzero(np.triu(near))
+    return one, other
+
+
+def _cross_inside(p: Array, r: Array, q: Array, s: Array) -> NDArray[np.bool_]:
+    """Whether segments p + t r and q + u s cross between their ends."""
+    across = _cross(r, s)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = _cross(q - p, s) / across
+        u = _cross(q - p, r) / across
+    inside_one = (t > 0) & (t < 1)
+    inside_other = (u > 0) & (u < 1)
+    return np.asarray((across != 0) & inside_one & inside_other)
 
 
 def _cross(a: Array, b: Array) -> Array:
@@ -147,15 +180,19 @@ def base_of(one: Section) -> int:
     -----
     **Source**: [stheta2023] Sec. 2.1.
     """
-    count = len(one.points) - 1
-    tangent = np.concatenate([one.ahead[:-1], one.ahead[:-1] + 2 * pi])
+    first_turn = one.ahead[:-1]
+    count = len(first_turn)
+    tangent = np.concatenate([first_turn, first_turn + 2 * pi])
     drop = np.maximum.accumulate(tangent) - tangent
     deepest = int(np.argmax(drop[count:])) + count
     if drop[deepest] > HOLLOW:
         return deepest % count
     turns = np.array([-1.0, 0.0, 1.0])[:, None]
-    angle = np.maximum.accumulate((one.ahead[:-1] + 2 * pi * turns).ravel())
-    places = (one.lengths[:-1] + one.length * turns).ravel()
+    angle = (first_turn + 2 * pi * turns).ravel()
+    greatest = np.maximum.accumulate(angle)
     here = one.lengths[:-1]
-    ahead, before = (np.interp(one.ahead[:-1] + sense * pi / 2, angle, places) for sense in (1, -1))
-    return int(np.argmax(np.round(np.minimum(ahead - here, here - before), 6)))
+    places = (here + one.length * turns).ravel()
+    ahead = np.interp(first_turn + pi / 2, greatest, places)
+    before = np.interp(first_turn - pi / 2, greatest, places)
+    shorter = np.minimum(ahead - here, here - before)
+    return int(np.argmax(np.round(shorter, 6)))

@@ -37,67 +37,110 @@ def strokes(work: TwoPointInputs, strips: tuple[Strip, ...], direction: str = "z
     found: list[list[MovingCuttingMove]] = []
     for number, one in enumerate(strips):
         progress.report("postures", number, len(strips))
-        onward = number % 2 == 0 if direction == "zigzag" else climbs == (direction == "climb")
-        pieces = [_stroke(work, one, lane, span) for lane, where in one.shares
-                  for span in _spans(work, one, lane, where)]
+        if direction == "zigzag":
+            onward = number % 2 == 0
+        else:
+            onward = climbs == (direction == "climb")
+        pieces = _strokes_of_strip(work, one)
+        if not onward:
+            pieces = [_back(piece) for piece in reversed(pieces)]
         if pieces:
-            found.append(pieces if onward else [_back(piece) for piece in reversed(pieces)])
+            found.append(pieces)
     return found
+
+
+def _strokes_of_strip(work: TwoPointInputs, one: Strip) -> list[MovingCuttingMove]:
+    """Cutting motions of one pass, all in growing parameter."""
+    pieces = []
+    for lane, where in one.shares:
+        spans = _spans(work, one, lane, where)
+        pieces += [_stroke(work, one, lane, span) for span in spans]
+    return pieces
 
 
 def _climbs(work: TwoPointInputs) -> bool:
     """Whether travel in growing parameter climbs: passes proceed in growing step parameter, where material is left."""
     a0, a1, s0, s1 = work.span
-    uv = work.uv(np.array([(a0 + a1) / 2]), (s0 + s1) / 2)
+    middle = np.array([(a0 + a1) / 2])
+    uv = work.uv(middle, (s0 + s1) / 2)
     d = work.face.evaluate(uv)
     normal = work.face.normal(uv)[0]
     along = d.su[0]
     across = d.sv[0]
     if work.feed == "v":
         along, across = across, along
-    return bool(np.cross(along, normal) @ across >= 0)
+    leftwards = np.cross(along, normal)
+    return bool(leftwards @ across >= 0)
 
 
 def _spans(work: TwoPointInputs, one: Strip, lane: PassPostures, where: slice) -> list[tuple[float, float]]:
     """From where to where along a pass a lane works: as far as its strip holds some of the face."""
+    on = _meets_face(work, one) & ~left_out(one)
+    on[1:-1] |= on[2:] | on[:-2]
+    own = np.zeros(len(on), dtype=bool)
+    own[where] = True
+    works = (on & own).astype(int)
+    padded = np.concatenate([[0], works, [0]])
+    changes = np.flatnonzero(np.diff(padded))
+    found = []
+    for first, after in changes.reshape(-1, 2):
+        begin = max(first - 1, 0)
+        reach = lane.reach[begin:after + 1]
+        is_known = np.isfinite(reach).all(axis=1)
+        reach = reach[is_known]
+        if not len(reach):
+            continue
+        low = reach[:, 0].min()
+        high = reach[:, 1].max()
+        if high > low:
+            found.append((float(low), float(high)))
+    return found
+
+
+def _meets_face(work: TwoPointInputs, one: Strip) -> Bools:
+    """At which places along a pass its strip holds some of the face."""
     along = places(work)
     low = one.step - one.halves[:, 0]
     high = one.step + one.halves[:, 1]
     share = np.linspace(0.0, 1.0, _ACROSS)
-    steps = np.clip(low[:, None] + (high - low)[:, None] * share, *work.span[2:])
-    pair = np.stack(np.broadcast_arrays(along[:, None], steps), axis=-1).reshape(-1, 2)
-    inside = work.face.contains(pair if work.feed == "u" else pair[:, ::-1])
-    on = inside.reshape(steps.shape).any(axis=1) & ~left_out(one)
-    on[1:-1] |= on[2:] | on[:-2]
-    own = np.zeros(len(on), dtype=bool)
-    own[where] = True
-    works = np.concatenate([[0], (on & own).astype(int), [0]])
-    changes = np.flatnonzero(np.diff(works))
-    found = []
-    for first, after in changes.reshape(-1, 2):
-        reach = lane.reach[max(first - 1, 0):after + 1]
-        reach = reach[np.isfinite(reach).all(axis=1)]
-        if len(reach) and reach[:, 1].max() > reach[:, 0].min():
-            found.append((float(reach[:, 0].min()), float(reach[:, 1].max())))
-    return found
+    width = high - low
+    steps = low[:, None] + width[:, None] * share
+    steps = np.clip(steps, *work.span[2:])
+    everywhere = np.broadcast_to(along[:, None], steps.shape)
+    pair = np.stack([everywhere, steps], axis=-1).reshape(-1, 2)
+    if work.feed == "v":
+        pair = pair[:, ::-1]
+    inside = work.face.contains(pair)
+    return np.asarray(inside.reshape(steps.shape).any(axis=1))
 
 
 def _stroke(work: TwoPointInputs, one: Strip, lane: PassPostures, span: tuple[float, float]) -> MovingCuttingMove:
     """Points of a pass, so close that straight motions keep the chord tolerance, at tip, rim and twice that high."""
+    along = _places_of_stroke(work, lane, span)
+    found = postures(work, along, one.step, lane.sense, (lane.along, lane.postures.stand))
+    contact = work.face.evaluate(found.uv).point
+    stroke = MovingCuttingMove(contact, found.ring.tip, found.normal, found.ring.axis)
+    deeper = _rises(work, stroke, along)
+    lowered = stroke.tip - deeper[:, None] * stroke.normal
+    return replace(stroke, tip=lowered)
+
+
+def _places_of_stroke(work: TwoPointInputs, lane: PassPostures, span: tuple[float, float]) -> Array:
+    """Along parameters of a stroke's points: those of its postures, and as many between them as the chord asks for."""
     begin, end = span
     on = (lane.along >= begin) & (lane.along <= end)
-    along = np.unique(np.concatenate([[begin], lane.along[on], [end]]))
+    along = np.concatenate([[begin], lane.along[on], [end]])
+    along = np.unique(along)
     # An end may lie beside a posture by the last digit: points there would coincide, and have no way between them.
-    along = along[np.append(np.diff(along) > _SAME * (end - begin), True)]
+    is_apart = np.diff(along) > _SAME * (end - begin)
+    along = along[np.append(is_apart, True)]
     middles = (along[1:] + along[:-1]) / 2
-    parts = np.interp(middles, lane.along[1:-1], _parts(work, lane)).round().astype(np.int64)
-    pieces = [np.linspace(low, high, count, endpoint=False)
-              for (low, high), count in zip(pairwise(along), parts, strict=True)]
-    along = np.concatenate([*pieces, along[-1:]])
-    found = postures(work, along, one.step, lane.sense, (lane.along, lane.postures.stand))
-    stroke = MovingCuttingMove(work.face.evaluate(found.uv).point, found.ring.tip, found.normal, found.ring.axis)
-    deeper = _rises(work, stroke, along)
-    return replace(stroke, tip=stroke.tip - deeper[:, None] * stroke.normal)
+    parts = np.interp(middles, lane.along[1:-1], _parts(work, lane))
+    parts = parts.round().astype(np.int64)
+    pieces = []
+    for (low, high), number in zip(pairwise(along), parts, strict=True):
+        pieces.append(np.linspace(low, high, number, endpoint=False))
+    return np.concatenate([*pieces, along[-1:]])
 
 
 def _rises(work: TwoPointInputs, stroke: MovingCuttingMove, along: Array) -> Array:
@@ -108,21 +151,25 @@ def _rises(work: TwoPointInputs, stroke: MovingCuttingMove, along: Array) -> Arr
     if len(along) < 3:
         return np.zeros(len(along))
     gap = np.diff(along)
-    tip, rim = _bends(stroke.tip, stroke.axis, gap, work.tool.radius)
-    bend = (tip * stroke.normal[1:-1]).sum(axis=1) + np.linalg.norm(rim - tip, axis=1)
+    tip = _second_derivative(stroke.tip, gap)
+    rim = _second_derivative(stroke.tip + work.tool.radius * stroke.axis, gap)
+    inward = (tip * stroke.normal[1:-1]).sum(axis=1)
+    bend = inward + np.linalg.norm(rim - tip, axis=1)
     bend = np.concatenate([bend[:1], bend, bend[-1:]])
-    above = np.maximum(np.maximum(bend[1:], bend[:-1]), 0.0) * gap**2 / 8
+    sharper = np.maximum(bend[1:], bend[:-1])
+    above = np.maximum(sharper, 0.0) * gap**2 / 8
     above = np.minimum(above, work.chord)  # corners of the way lie at points: between them there are none
-    return np.asarray(np.maximum(np.append(above, 0.0), np.append(0.0, above)))
+    before = np.append(0.0, above)
+    behind = np.append(above, 0.0)
+    return np.asarray(np.maximum(behind, before))
 
 
-def _bends(tip: Array, axis: Array, gap: Array, radius: float) -> tuple[Array, Array]:
-    """Second derivatives of the ways of tip and rim at all points but the first and the last, (n - 2, 3) each."""
-    both = []
-    for height in (0.0, radius):
-        way = np.diff(tip + height * axis, axis=0) / gap[:, None]
-        both.append(2 * np.diff(way, axis=0) / (gap[1:] + gap[:-1])[:, None])
-    return both[0], both[1]
+def _second_derivative(points: Array, gap: Array) -> Array:
+    """How a way of points bends at all of them but the first and the last, (n - 2, 3)."""
+    speed = np.diff(points, axis=0) / gap[:, None]
+    change = 2 * np.diff(speed, axis=0)
+    between = gap[1:] + gap[:-1]
+    return np.asarray(change / between[:, None])
 
 
 def _parts(work: TwoPointInputs, lane: PassPostures) -> NDArray[np.int64]:
@@ -130,16 +177,25 @@ def _parts(work: TwoPointInputs, lane: PassPostures) -> NDArray[np.int64]:
     ring = lane.postures.ring
     gap = np.diff(lane.along)
     wider = np.maximum(gap[1:], gap[:-1])
+    between = gap[1:] + gap[:-1]
     sag = np.zeros(len(gap) - 1)
     for height in (0.0, work.tool.radius):
-        way = np.diff(ring.tip + height * ring.axis, axis=0) / gap[:, None]
-        bend = 2 * np.linalg.norm(np.diff(way, axis=0), axis=1) / (gap[1:] + gap[:-1])
+        points = ring.tip + height * ring.axis
+        speed = np.diff(points, axis=0) / gap[:, None]
+        change = np.linalg.norm(np.diff(speed, axis=0), axis=1)
+        bend = 2 * change / between
         sag = np.maximum(sag, bend * wider**2 / 8)
     behind = np.append(sag[1:], 0.0)
     before = np.append(0.0, sag[:-1])
-    greatest = np.maximum(np.maximum(sag, behind), before)
-    return np.asarray(np.clip(np.ceil(np.sqrt(greatest / work.chord)), 1, 12).astype(np.int64))
+    greatest = np.maximum(sag, behind)
+    greatest = np.maximum(greatest, before)
+    parts = np.ceil(np.sqrt(greatest / work.chord))
+    return np.asarray(np.clip(parts, 1, 12).astype(np.int64))
 
 
 def _back(stroke: MovingCuttingMove) -> MovingCuttingMove:
-    return MovingCuttingMove(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1], stroke.axis[::-1])
+    contact = stroke.contact[::-1]
+    tip = stroke.tip[::-1]
+    normal = stroke.normal[::-1]
+    axis = stroke.axis[::-1]
+    return MovingCuttingMove(contact, tip, normal, axis)
