@@ -49,22 +49,30 @@ def contacts_at(face: Face, uv: Array, weighed: int, walls: tuple[Face, ...], re
     share[weighed:] = 0.0
     good = np.linalg.norm(normal, axis=1) > 0.5
     total = float(share[good].sum())
-    return CheckPoints(uv[good], d.point[good], normal[good], share[good] / (total if total > 0 else 1.0),
-                       _near(d.point[good], walls, reach))
+    if not total > 0:
+        total = 1.0
+    point = d.point[good]
+    near = _near(point, walls, reach)
+    return CheckPoints(uv[good], point, normal[good], share[good] / total, near)
 
 
 def _near(points: Array, walls: tuple[Face, ...], reach: float) -> Bools:
     """Which walls are within reach of each point, (n, walls): which meet the upper or the lower half of a ball."""
     found = np.zeros((len(points), len(walls)), dtype=bool)
-    half, up = Tool.ball(2 * reach, flute_length=(1 + 1e-9) * reach), np.array([0.0, 0.0, 1.0])
+    half = Tool.ball(2 * reach, flute_length=(1 + 1e-9) * reach)
+    up = np.array([0.0, 0.0, 1.0])
+    touching = np.zeros((1, 3))
     for k, wall in enumerate(walls):
-        gap = np.maximum(np.maximum(wall.box[0] - points, points - wall.box[1]), 0.0)
-        close = np.flatnonzero(np.linalg.norm(gap, axis=1) <= reach)
+        low, high = wall.box
+        gap = np.maximum(low - points, points - high)
+        distance = np.linalg.norm(np.maximum(gap, 0.0), axis=1)
+        close = np.flatnonzero(distance <= reach)
         for axis in (up, -up):
             rest = close[~found[close, k]]
             if len(rest):
                 moves = motions(points[rest] - reach * axis, axis)
-                found[rest, k] = keeps_limits(cells(wall), half, moves, np.zeros((1, 3))).blocked >= 0
+                met = keeps_limits(cells(wall), half, moves, touching)
+                found[rest, k] = met.blocked >= 0
     return found
 
 
@@ -77,17 +85,31 @@ def around(face: Face, count: int) -> Array:
     count : int
         About how many in all.
     """
+    total = sum(float(_chords(face, _closed(loop)).sum()) for loop in face.outline)
+    share = np.linspace(0.0, 1.0, 33)[:-1, None]
     rows = []
-    total = sum(float(np.linalg.norm(np.diff(face.evaluate(np.vstack([loop, loop[:1]])).point, axis=0), axis=1).sum())
-                for loop in face.outline)
     for loop in face.outline:
-        closed = np.vstack([loop, loop[:1]])
-        share = np.linspace(0.0, 1.0, 33)[:-1]
-        fine = (closed[:-1, None] * (1 - share[:, None]) + closed[1:, None] * share[:, None]).reshape(-1, 2)
-        fine = np.vstack([fine, closed[-1:]])
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(face.evaluate(fine).point, axis=0), axis=1))])
-        wanted = max(8, round(count * length[-1] / total)) if total > 0 else 8
-        at = np.searchsorted(round_significant(length), round_significant(np.linspace(0, length[-1], wanted,
-                                                                                      endpoint=False)))
-        rows += [fine[at], loop] if len(loop) <= wanted // 2 else [fine[at]]
+        closed = _closed(loop)
+        fine = closed[:-1, None] * (1 - share) + closed[1:, None] * share
+        fine = np.vstack([fine.reshape(-1, 2), closed[-1:]])
+        length = np.concatenate([[0.0], np.cumsum(_chords(face, fine))])
+        wanted = 8
+        if total > 0:
+            wanted = max(8, round(count * length[-1] / total))
+        even = np.linspace(0, length[-1], wanted, endpoint=False)
+        at = np.searchsorted(round_significant(length), round_significant(even))
+        rows.append(fine[at])
+        if len(loop) <= wanted // 2:
+            rows.append(loop)
     return np.concatenate(rows)
+
+
+def _closed(loop: Array) -> Array:
+    """A loop with its first point at its end too."""
+    return np.vstack([loop, loop[:1]])
+
+
+def _chords(face: Face, uv: Array) -> Array:
+    """Distances of neighbouring places on a face, (n - 1,) mm."""
+    points = face.evaluate(uv).point
+    return np.asarray(np.linalg.norm(np.diff(points, axis=0), axis=1))

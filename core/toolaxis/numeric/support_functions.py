@@ -46,10 +46,12 @@ class ConvexBodies(NamedTuple):
     def moved(self, matrix: Array) -> "ConvexBodies":
         """The bodies after a rigid motion (4, 4), or a single one after each of some (n, 4, 4)."""
         turn = np.swapaxes(matrix[..., :3, :3], -1, -2)
-        centre = self.centre @ turn + matrix[..., None, :3, 3]
+        shift = matrix[..., None, :3, 3]
+        centre = self.centre @ turn + shift
         size = (len(centre), self.radius.shape[1])
-        return ConvexBodies(centre, self.axis @ turn, np.broadcast_to(self.radius, size),
-                            np.broadcast_to(self.ball, size), self.spread @ turn)
+        radius = np.broadcast_to(self.radius, size)
+        ball = np.broadcast_to(self.ball, size)
+        return ConvexBodies(centre, self.axis @ turn, radius, ball, self.spread @ turn)
 
     def support(self, ways: Array) -> Array:
         """The point of each body that is farthest along a direction, (n, 3).
@@ -59,30 +61,34 @@ class ConvexBodies(NamedTuple):
         ways : (n, 3) array
             Unit vectors; n is k, or any where k is 1.
         """
-        count = len(ways)
-        every = np.arange(count)
+        number = len(ways)
+        every = np.arange(number)
         along = _project(self.axis, ways)
         height = _project(self.centre, ways)
         across = np.sqrt(np.maximum(1.0 - along**2, 0.0))
-        best = np.argmax(height + self.radius * across + self.ball, axis=1)
-        row = np.zeros(count, dtype=int) if len(self.centre) == 1 else every
+        farthest = height + self.radius * across + self.ball
+        best = np.argmax(farthest, axis=1)
+        row = np.zeros(number, dtype=int) if len(self.centre) == 1 else every
         slant = along[every, best][:, None]
         rim = ways - slant * self.axis[row, best]
         size = lengths(rim)[:, None]
         leans = size > _ALONG
         rim = np.where(leans, rim / np.where(leans, size, 1.0), 0.0)
-        spread = np.broadcast_to(self.spread, (count, 3, 3))
-        sides = np.where(np.einsum("nic,nc->ni", spread, ways) >= 0, 1.0, -1.0)
+        spread = np.broadcast_to(self.spread, (number, 3, 3))
+        rises = np.einsum("nic,nc->ni", spread, ways)
+        sides = np.where(rises >= 0, 1.0, -1.0)
         moved = np.einsum("ni,nic->nc", sides, spread)
         radius = self.radius[row, best][:, None]
         ball = self.ball[row, best][:, None]
-        return np.asarray(self.centre[row, best] + radius * rim + ball * ways + moved)
+        centre = self.centre[row, best]
+        return np.asarray(centre + radius * rim + ball * ways + moved)
 
     @property
     def reach(self) -> Array:
         """Radius about the origin that holds each body, (k,) mm."""
         far = np.linalg.norm(self.centre, axis=2) + self.radius + self.ball
-        return np.asarray(far.max(axis=1) + np.linalg.norm(self.spread, axis=2).sum(axis=1))
+        spread = np.linalg.norm(self.spread, axis=2)
+        return np.asarray(far.max(axis=1) + spread.sum(axis=1))
 
 
 def _project(vectors: Array, ways: Array) -> Array:
@@ -100,9 +106,12 @@ def boxes(low: ArrayLike, high: ArrayLike) -> ConvexBodies:
     low, high : (k, 3) or (3,) array_like
         mm
     """
-    one, other = np.atleast_2d(np.asarray(low, dtype=float)), np.atleast_2d(np.asarray(high, dtype=float))
+    one = np.atleast_2d(np.asarray(low, dtype=float))
+    other = np.atleast_2d(np.asarray(high, dtype=float))
     half = (other - one) / 2
-    return _discs(((one + other) / 2)[:, None], spread=half[:, :, None] * np.eye(3))
+    middle = (one + other) / 2
+    spread = half[:, :, None] * np.eye(3)
+    return _discs(middle[:, None], spread)
 
 
 def hull(points: ArrayLike, ball: float = 0.0) -> ConvexBodies:
@@ -116,7 +125,8 @@ def hull(points: ArrayLike, ball: float = 0.0) -> ConvexBodies:
         mm
     """
     rows = np.asarray(points, dtype=float)[None]
-    return _discs(rows)._replace(ball=np.full(rows.shape[:2], float(ball)))
+    balls = np.full(rows.shape[:2], float(ball))
+    return _discs(rows)._replace(ball=balls)
 
 
 def places(points: ArrayLike) -> ConvexBodies:
@@ -127,7 +137,8 @@ def places(points: ArrayLike) -> ConvexBodies:
     points : (k, 3) array_like
         mm
     """
-    return _discs(np.asarray(points, dtype=float)[:, None])
+    rows = np.asarray(points, dtype=float)
+    return _discs(rows[:, None])
 
 
 def segments(points: ArrayLike) -> ConvexBodies:
@@ -141,9 +152,10 @@ def segments(points: ArrayLike) -> ConvexBodies:
     rows = np.asarray(points, dtype=float)
     if len(rows) == 1:
         return _discs(rows[:, None])
-    spread = np.zeros((len(rows) - 1, 3, 3))
+    middle = (rows[1:] + rows[:-1]) / 2
+    spread = np.zeros((len(middle), 3, 3))
     spread[:, 0] = np.diff(rows, axis=0) / 2
-    return _discs(((rows[1:] + rows[:-1]) / 2)[:, None], spread=spread)
+    return _discs(middle[:, None], spread)
 
 
 def revolve_body(ends: ArrayLike, radius: ArrayLike, ball: ArrayLike = 0.0) -> ConvexBodies:
@@ -158,17 +170,20 @@ def revolve_body(ends: ArrayLike, radius: ArrayLike, ball: ArrayLike = 0.0) -> C
     """
     rows = np.asarray(ends, dtype=float)
     way = rows[-1] - rows[0]
-    count = (1, len(rows))
-    return ConvexBodies(rows[None], np.broadcast_to(way / np.linalg.norm(way), (*count, 3)),
-                        np.broadcast_to(np.asarray(radius, dtype=float), count),
-                        np.broadcast_to(np.asarray(ball, dtype=float), count), np.zeros((1, 3, 3)))
+    size = (1, len(rows))
+    axis = np.broadcast_to(way / np.linalg.norm(way), (*size, 3))
+    radii = np.broadcast_to(np.asarray(radius, dtype=float), size)
+    balls = np.broadcast_to(np.asarray(ball, dtype=float), size)
+    return ConvexBodies(rows[None], axis, radii, balls, np.zeros((1, 3, 3)))
 
 
 def _discs(centre: Array, spread: Array | None = None) -> ConvexBodies:
     """Points (k, j, 3) as discs of no size."""
-    count = centre.shape[:2]
-    return ConvexBodies(centre, np.tile([0.0, 0.0, 1.0], (*count, 1)), np.zeros(count), np.zeros(count),
-                        np.zeros((len(centre), 3, 3)) if spread is None else spread)
+    size = centre.shape[:2]
+    axis = np.tile([0.0, 0.0, 1.0], (*size, 1))
+    if spread is None:
+        spread = np.zeros((len(centre), 3, 3))
+    return ConvexBodies(centre, axis, np.zeros(size), np.zeros(size), spread)
 
 
 def separation(one: Sequence[ConvexBodies], other: Sequence[ConvexBodies], enough: float = np.inf,
@@ -193,108 +208,145 @@ def separation(one: Sequence[ConvexBodies], other: Sequence[ConvexBodies], enoug
     Johnson and Keerthi (1988).  Where they meet, the directions of edges and axes and those across two of them are
     tried, and then those beside the best: exact for boxes, and for a face of one body against the other.
     """
-    count = max(len(each.centre) for each in (*one, *other))
+    number = max(len(each.centre) for each in (*one, *other))
     pair = (tuple(one), tuple(other))
-    start = (sum((each.centre.mean(axis=1) for each in one), np.zeros(3))
-             - sum((each.centre.mean(axis=1) for each in other), np.zeros(3)))
-    towards = np.broadcast_to(start, (count, 3)).copy()
+    start = _sum_of_middles(one) - _sum_of_middles(other)
+    towards = np.broadcast_to(start, (number, 3)).copy()
     towards[lengths(towards) < 1e-9] = [0.0, 0.0, 1.0]
-    best, meets = _search_separation(pair, towards, (enough, tolerance))
-    rows = np.flatnonzero(meets if inner is None else meets & ~inner)
+    best, meets = _search_separation(pair, towards, enough, tolerance)
+    if inner is not None:
+        meets = meets & ~inner
+    rows = np.flatnonzero(meets)
     if len(rows):
-        best[rows] = np.maximum(best[rows], _depths(_choose_rows(pair, rows), len(rows)))
+        depths = _depths(_choose_rows(pair, rows), len(rows))
+        best[rows] = np.maximum(best[rows], depths)
     return best
+
+
+def _sum_of_middles(bodies: Sequence[ConvexBodies]) -> Array:
+    """The middle of bodies that are carried along each other, (n, 3) or (3,)."""
+    return np.asarray(sum((each.centre.mean(axis=1) for each in bodies), np.zeros(3)))
 
 
 _Pair = tuple[tuple[ConvexBodies, ...], tuple[ConvexBodies, ...]]
 
 
 def _choose_rows(pair: _Pair, rows: NDArray[np.int64] | Bools) -> _Pair:
-    return tuple(each.rows(rows) for each in pair[0]), tuple(each.rows(rows) for each in pair[1])
+    one, other = pair
+    chosen_one = tuple(each.rows(rows) for each in one)
+    chosen_other = tuple(each.rows(rows) for each in other)
+    return chosen_one, chosen_other
 
 
 def _nearest_along(pair: _Pair, ways: Array) -> Array:
     """The point of the difference of each pair that is least along a direction, (n, 3)."""
+    one, other = pair
     zero = np.zeros_like(ways)
-    return np.asarray(sum((each.support(-ways) for each in pair[0]), zero)
-                      - sum((each.support(ways) for each in pair[1]), zero))
+    least_of_one = sum((each.support(-ways) for each in one), zero)
+    greatest_of_other = sum((each.support(ways) for each in other), zero)
+    return np.asarray(least_of_one - greatest_of_other)
 
 
-def _search_separation(pair: _Pair, towards: Array, limits: tuple[float, float]) -> tuple[Array, Bools]:
+def _search_separation(pair: _Pair, towards: Array, enough: float, tolerance: float) -> tuple[Array, Bools]:
     """The best gap of each pair, and whether the pair seems to meet."""
-    enough, tolerance = limits
-    count = len(towards)
-    best, meets = np.full(count, -np.inf), np.zeros(count, dtype=bool)
-    simplex, held = np.zeros((count, 4, 3)), np.zeros((count, 4), dtype=bool)
-    near, rows = towards.copy(), np.arange(count)
+    number = len(towards)
+    best = np.full(number, -np.inf)
+    meets = np.zeros(number, dtype=bool)
+    simplex = np.zeros((number, 4, 3))
+    held = np.zeros((number, 4), dtype=bool)
+    near = towards.copy()
+    rows = np.arange(number)
     for _ in range(_ROUNDS):
         size = lengths(near[rows])
         inside = size <= 1e-7
         meets[rows[inside]] = True
-        rows, size = rows[~inside], size[~inside]
+        rows = rows[~inside]
+        size = size[~inside]
         ways = near[rows] / size[:, None]
         found = _nearest_along(_choose_rows(pair, rows), ways)
         gap = (found * ways).sum(axis=1)
         best[rows] = np.maximum(best[rows], gap)
-        going = (best[rows] < enough) & (~held[rows].any(axis=1) | (size - gap > tolerance))
+        is_first = ~held[rows].any(axis=1)
+        is_inexact = size - gap > tolerance
+        going = (best[rows] < enough) & (is_first | is_inexact)
         full = held[rows].all(axis=1)
         meets[rows[full & going]] = True
-        rows, found = rows[going & ~full], found[going & ~full]
+        goes_on = going & ~full
+        rows = rows[goes_on]
         if not len(rows):
             break
         slot = np.argmin(held[rows], axis=1)
-        simplex[rows, slot], held[rows, slot] = found, True
+        simplex[rows, slot] = found[goes_on]
+        held[rows, slot] = True
         near[rows], held[rows] = _nearest(simplex[rows], held[rows])
     return best, meets | (best < 0)
 
 
 def _nearest(simplex: Array, held: Bools) -> tuple[Array, Bools]:
     """The point of each simplex that is nearest to the origin, (n, 3), and which of its corners it lies between."""
-    count = len(simplex)
-    best, near = np.full(count, np.inf), np.zeros((count, 3))
-    kept = np.zeros((count, 4), dtype=bool)
+    number = len(simplex)
+    best = np.full(number, np.inf)
+    near = np.zeros((number, 3))
+    kept = np.zeros((number, 4), dtype=bool)
     for some, mask in zip(_SUBSETS, _MASKS, strict=True):
         there = held[:, some].all(axis=1)
         if not there.any():
             continue
-        corners = simplex[there][:, some]
-        place, within = corners[:, 0], np.ones(len(corners), dtype=bool)
-        if len(some) > 1:
-            base, edges = place, corners[:, 1:] - corners[:, :1]
-            gram = edges @ edges.transpose(0, 2, 1)
-            size = np.trace(gram, axis1=1, axis2=2)
-            gram = gram + (1e-13 * size + 1e-30)[:, None, None] * np.eye(len(some) - 1)
-            shares = np.linalg.solve(gram, -(edges @ base[:, :, None]))[:, :, 0]
-            place = base + (shares[:, :, None] * edges).sum(axis=1)
-            within = (shares >= 0).all(axis=1) & (shares.sum(axis=1) <= 1)
+        place, within = _nearest_to_origin(simplex[there][:, some])
         length = lengths(place)
         good = within & (length < best[there] * (1 - 1e-12))
         rows = np.flatnonzero(there)[good]
-        best[rows], near[rows] = length[good], place[good]
+        best[rows] = length[good]
+        near[rows] = place[good]
         kept[rows] = mask
     return near, kept
 
 
-def _depths(pair: _Pair, count: int) -> Array:
-    """The best gap along directions of edges, axes and those across two of them, (n,) mm."""
-    lines = [np.broadcast_to(line, (count, 3)) for each in (*pair[0], *pair[1])
-             for line in (*each.spread.transpose(1, 0, 2), each.axis[:, 0])]
-    ways = [*lines, *(np.cross(a, b) for a, b in combinations(lines, 2))]
-    best, along = np.full(count, -np.inf), np.tile([0.0, 0.0, 1.0], (count, 1))
+def _nearest_to_origin(corners: Array) -> tuple[Array, Bools]:
+    """The place nearest to the origin on what n times k corners span, and whether it lies between them."""
+    base = corners[:, 0]
+    if corners.shape[1] == 1:
+        return base, np.ones(len(corners), dtype=bool)
+    edges = corners[:, 1:] - corners[:, :1]
+    gram = edges @ edges.transpose(0, 2, 1)
+    size = np.trace(gram, axis1=1, axis2=2)
+    # Corners that lie in a line or plane leave the shares open: the smallest ones will do.
+    slight = 1e-13 * size + 1e-30
+    gram = gram + slight[:, None, None] * np.eye(edges.shape[1])
+    right = -(edges @ base[:, :, None])
+    shares = np.linalg.solve(gram, right)[:, :, 0]
+    place = base + (shares[:, :, None] * edges).sum(axis=1)
+    is_between = (shares >= 0).all(axis=1)
+    return place, is_between & (shares.sum(axis=1) <= 1)
 
-    def _tried(ways: Array) -> None:
+
+def _depths(pair: _Pair, number: int) -> Array:
+    """The best gap along directions of edges, axes and those across two of them, (n,) mm."""
+    lines = []
+    for each in (*pair[0], *pair[1]):
+        directions = (*each.spread.transpose(1, 0, 2), each.axis[:, 0])
+        lines += [np.broadcast_to(line, (number, 3)) for line in directions]
+    across = [np.cross(a, b) for a, b in combinations(lines, 2)]
+    best = np.full(number, -np.inf)
+    along = np.tile([0.0, 0.0, 1.0], (number, 1))
+
+    def _try_ways(ways: Array) -> None:
         size = lengths(ways)
         good = np.flatnonzero(size > 1e-9)
-        if len(good):
-            unit = ways[good] / size[good, None]
-            gap = (_nearest_along(_choose_rows(pair, good), unit) * unit).sum(axis=1)
-            better = gap > best[good]
-            best[good[better]], along[good[better]] = gap[better], unit[better]
+        if not len(good):
+            return
+        unit = ways[good] / size[good, None]
+        nearest = _nearest_along(_choose_rows(pair, good), unit)
+        gap = (nearest * unit).sum(axis=1)
+        better = gap > best[good]
+        improved = good[better]
+        best[improved] = gap[better]
+        along[improved] = unit[better]
 
-    for way in ways:
-        _tried(way)
-        _tried(-way)
+    for way in (*lines, *across):
+        _try_ways(way)
+        _try_ways(-way)
     for step in _STEPS:
         for turn in (*np.eye(3), *-np.eye(3)):
-            _tried(along + step * turn)
+            _try_ways(along + step * turn)
     return best

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from toolaxis.progress import NO_PROGRESS, Progress
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Index = NDArray[np.intp]
 Reach = Callable[[Array], Bools]
 
 _BISECTIONS = 14
@@ -88,78 +90,120 @@ def lay_out(chart: Chart, cut: Cut, reach: Reach | None = None, progress: Progre
         column = _reachable(chart, cut, across.along, column, reach)
     material = table(column, len(across.along))
     spacing = space(chart, cut, across, material, progress)
-    found = _extend_pieces(chart, cut, spacing.steps, _stretches_on_material(chart, spacing, material))
+    stretches = _stretches_on_material(chart, spacing, material)
+    found = _extend_pieces(chart, cut, spacing.steps, stretches)
     if reach is not None:
         found = _cut_out(chart, cut, spacing.steps, found, reach)
-    pieces = np.column_stack([found.low, found.high, spacing.steps[found.line]])
+    steps = spacing.steps[found.line]
+    pieces = np.column_stack([found.low, found.high, steps])
     return Layout(chart, cut, spacing, pieces, found.line)
 
 
 def _overlaps(material: Array, low: Array, high: Array) -> Bools:
     """Whether bands low..high on columns (..., k, 2) hold material."""
-    return np.asarray(((material[..., 0] < high[..., None]) & (material[..., 1] > low[..., None])).any(axis=-1))
+    begins_below = material[..., 0] < high[..., None]
+    ends_above = material[..., 1] > low[..., None]
+    return np.asarray((begins_below & ends_above).any(axis=-1))
 
 
 def _stretches_on_material(chart: Chart, spacing: Spacing, material: Array) -> Intervals:
     """Stretches of each pass on which its strip holds material, with their ends found by bisection."""
     along = spacing.lines.along
-    halves = np.array([spacing.lines.spread_widths(h) for h in spacing.halves]).reshape(-1, len(along), 2)
-    low = spacing.steps[:, None] - halves[..., 0]
-    high = spacing.steps[:, None] + halves[..., 1]
-    need = _overlaps(material[None], low, high)
-    # Between neighbouring columns of which one holds material: from the inside and from the outside towards its end.
-    line, i = np.nonzero(need[:, 1:] != need[:, :-1])
-    inside = along[np.where(need[line, i], i, i + 1)]
-    outside = along[np.where(need[line, i], i + 1, i)]
+    spread = [spacing.lines.spread_widths(h) for h in spacing.halves]
+    halves = np.array(spread).reshape(-1, len(along), 2)
+    steps = spacing.steps[:, None]
+    strips = _StripSides(steps - halves[..., 0], steps + halves[..., 1])
+    need = _overlaps(material[None], strips.low, strips.high)
+    # A stretch ends between two neighbouring columns of which one holds material.
+    line, before = np.nonzero(need[:, 1:] != need[:, :-1])
+    end = along[before]
     if len(line):
-        for _ in range(_BISECTIONS):
-            middle = (inside + outside) / 2
-            share = (middle - along[i]) / (along[i + 1] - along[i])
-            band = [side[line, i] * (1 - share) + side[line, i + 1] * share for side in (low, high)]
-            full = _overlaps(table(columns(chart, middle), len(middle)), *band)
-            inside = np.where(full, middle, inside)
-            outside = np.where(full, outside, middle)
+        end = _ends_of_material(chart, along, strips, line, before, need[line, before])
     from_start = np.flatnonzero(need[:, 0])
     to_end = np.flatnonzero(need[:, -1])
-    lines_of_ends = np.concatenate([line, from_start, to_end])
-    places = np.concatenate([outside, np.full(len(from_start), along[0]), np.full(len(to_end), along[-1])])
-    order = np.lexsort((places, lines_of_ends))
-    line = lines_of_ends[order]
-    place = places[order]
+    starts = np.full(len(from_start), along[0])
+    ends = np.full(len(to_end), along[-1])
+    line = np.concatenate([line, from_start, to_end])
+    place = np.concatenate([end, starts, ends])
+    order = np.lexsort((place, line))
+    line = line[order]
+    place = place[order]
     return Intervals(line[::2], place[::2], place[1::2])
+
+
+class _StripSides(NamedTuple):
+    """Sides of the strips of k passes at the lines across them, (k, l) each."""
+
+    low: Array
+    high: Array
+
+
+def _ends_of_material(chart: Chart, along: Array, strips: _StripSides, line: Index, before: Index,
+                      full: Bools) -> Array:
+    """Where strips of passes cease or begin to hold material between a column, which holds some (full) or none, and
+    the next one."""
+    behind = before + 1
+    inside = along[np.where(full, before, behind)]
+    outside = along[np.where(full, behind, before)]
+    gap = along[behind] - along[before]
+    # Bisection, from the inside and from the outside towards the end.
+    for _ in range(_BISECTIONS):
+        middle = (inside + outside) / 2
+        share = (middle - along[before]) / gap
+        low, high = (side[line, before] * (1 - share) + side[line, behind] * share for side in strips)
+        material = table(columns(chart, middle), len(middle))
+        holds = _overlaps(material, low, high)
+        inside = np.where(holds, middle, inside)
+        outside = np.where(holds, outside, middle)
+    return outside
 
 
 def _extend_pieces(chart: Chart, cut: Cut, steps: Array, found: Intervals) -> Intervals:
     """Run pieces out as far as the cutter reaches at scallop height, and join those that then meet."""
     a0, a1, s0, s1 = chart.bounds
     step = np.clip(steps[found.line], s0, s1)
-    ends = (found.low, found.high)
-    before, after = (_run_out(chart, cut, (np.clip(end, a0, a1), step), side) for side, end in enumerate(ends))
+    begin = np.clip(found.low, a0, a1)
+    end = np.clip(found.high, a0, a1)
+    before = _run_out(chart, cut, begin, step, side=0)
+    after = _run_out(chart, cut, end, step, side=1)
     closed = chart.closed(step)
     before = np.where(closed & (found.low <= a0), 0.0, before)
     after = np.where(closed & (found.high >= a1), 0.0, after)
-    return merge_intervals(Intervals(found.line, found.low - before, found.high + after))
+    longer = Intervals(found.line, found.low - before, found.high + after)
+    return merge_intervals(longer)
 
 
-def _run_out(chart: Chart, cut: Cut, place: tuple[Array, Array], side: int) -> Array:
-    """How far pieces go on past places (along, step) on their lower (0) or upper (1) side."""
-    reach = chart.run_outs(cut, *place)[:, side]
-    reach = np.where(np.isfinite(reach) & (reach > 0), reach, 0.0)
-    return _RUN_OUT * np.maximum(reach, overrun_length(chart, cut, *place, forward=side == 1))
+def _run_out(chart: Chart, cut: Cut, along: Array, step: Array, side: int) -> Array:
+    """How far pieces go on past places on their lower (0) or upper (1) side."""
+    reach = chart.run_outs(cut, along, step)[:, side]
+    is_known = np.isfinite(reach) & (reach > 0)
+    reach = np.where(is_known, reach, 0.0)
+    overrun = overrun_length(chart, cut, along, step, forward=side == 1)
+    return _RUN_OUT * np.maximum(reach, overrun)
 
 
 def _reachable(chart: Chart, cut: Cut, along: Array, column: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the lines across the passes."""
     _, _, s0, s1 = chart.bounds
-    how = sampling(extents(chart)[1], s1 - s0, cut)
-    return filter_intervals(column, lambda line, place: reach(chart.uv(along[line], place)), *how)
+    _, length = extents(chart)
+    apart, exactness = sampling(length, s1 - s0, cut)
+
+    def may_visit(line: Index, place: Array) -> Bools:
+        return reach(chart.uv(along[line], place))
+
+    return filter_intervals(column, may_visit, apart, exactness)
 
 
 def _cut_out(chart: Chart, cut: Cut, steps: Array, found: Intervals, reach: Reach) -> Intervals:
     """What can be cut of the passes."""
     a0, a1, _, _ = chart.bounds
-    how = sampling(extents(chart)[0], a1 - a0, cut)
-    kept = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])), *how)
+    length, _ = extents(chart)
+    apart, exactness = sampling(length, a1 - a0, cut)
+
+    def may_visit(line: Index, place: Array) -> Bools:
+        return reach(chart.uv(place, steps[line]))
+
+    kept = filter_intervals(found, may_visit, apart, exactness)
     long_ = kept.high - kept.low > 1e-9 * (a1 - a0)
     return Intervals(kept.line[long_], kept.low[long_], kept.high[long_])
 
@@ -176,7 +220,9 @@ def sampling(length: float, span: float, cut: Cut) -> tuple[float, float]:
     cut : Cut
     """
     radius = cut.tool.radius / max(length, np.finfo(float).tiny)
-    return span * max(1 / _REACH_SAMPLES, PITCH * radius), span * max(_LEAST_ENDS, min(_ENDS * radius, 1.0))
+    apart = max(1 / _REACH_SAMPLES, PITCH * radius)
+    exactness = max(_LEAST_ENDS, min(_ENDS * radius, 1.0))
+    return span * apart, span * exactness
 
 
 def places_between(placed: Layout) -> Array:
@@ -198,22 +244,36 @@ def places_between(placed: Layout) -> Array:
     behind = np.array([np.interp(along, measured, half) for half in spacing.halves[1:, :, 0]])
     first = spacing.steps[:-1, None]
     last = spacing.steps[1:, None]
-    meeting = np.clip(np.nan_to_num((first + before + last - behind) / 2), first, last)
-    steps = [meeting, *(np.broadcast_to(first + share * (last - first), meeting.shape) for share in _BETWEEN)]
-    places = [chart.uv(np.tile(along, len(meeting)), one.ravel()) for one in steps]
-    found = np.concatenate([uv[chart.face.contains(uv)] for uv in places])
-    return found[::max(1, len(found) // _MOST_PLACES)]
+    apart = last - first
+    meeting = np.nan_to_num((first + before + last - behind) / 2)
+    meeting = np.clip(meeting, first, last)
+    steps = [meeting]
+    for share in _BETWEEN:
+        between = first + share * apart
+        steps.append(np.broadcast_to(between, meeting.shape))
+    every_along = np.tile(along, len(meeting))
+    places = []
+    for one in steps:
+        uv = chart.uv(every_along, one.ravel())
+        places.append(uv[chart.face.contains(uv)])
+    found = np.concatenate(places)
+    stride = max(1, len(found) // _MOST_PLACES)
+    return found[::stride]
 
 
 def _count_along(placed: Layout) -> int:
     """How many places along passes are no farther apart than the narrowest strip on a plane is wide, or as many as
     there may be of them."""
     cut = placed.cut
-    strip = 2 * np.sqrt(2 * (cut.tool.corner_radius or cut.tool.radius) * cut.scallop)
-    most = _MOST_ASKED // ((1 + len(_BETWEEN)) * len(placed.spacing.steps))
-    least = 2 * len(placed.spacing.lines.measured) - 1
+    spacing = placed.spacing
+    radius = cut.tool.corner_radius or cut.tool.radius
+    strip = 2 * np.sqrt(2 * radius * cut.scallop)
+    rows = (1 + len(_BETWEEN)) * len(spacing.steps)
+    most = _MOST_ASKED // rows
+    least = 2 * len(spacing.lines.measured) - 1
     length, _ = extents(placed.chart)
-    return max(least, min(most, int(np.ceil(length / strip))))
+    wanted = int(np.ceil(length / strip))
+    return max(least, min(most, wanted))
 
 
 def pass_length(placed: Layout) -> float:
@@ -227,7 +287,9 @@ def pass_length(placed: Layout) -> float:
         return 0.0
     low, high, steps = placed.pieces.T
     share = np.linspace(0.0, 1.0, _ALONG)
-    along = low[:, None] + share * (high - low)[:, None]
-    _, tips, _ = tip_points(placed.chart, placed.cut, along.ravel(), np.repeat(steps, _ALONG))
+    length = high - low
+    along = low[:, None] + share * length[:, None]
+    every_step = np.repeat(steps, _ALONG)
+    _, tips, _ = tip_points(placed.chart, placed.cut, along.ravel(), every_step)
     chords = np.diff(tips.reshape(-1, _ALONG, 3), axis=1)
     return float(np.linalg.norm(chords, axis=2).sum())

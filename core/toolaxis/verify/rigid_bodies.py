@@ -64,25 +64,36 @@ def body_thing(body: MachineBody) -> RigidBody:
         return revolve_rigid_body(body.name, body.carried, line, low, (high - low) / height)
     corners = body.points
     if body.kind == "box":
-        corners = np.array(np.meshgrid(*np.sort(body.points, axis=0).T)).reshape(3, -1).T
+        sides = np.sort(body.points, axis=0).T
+        corners = np.array(np.meshgrid(*sides)).reshape(3, -1).T
     hull = ConvexHull(corners)
+    planes = hull.equations
     triangles = corners[hull.simplices]
     points, spacing = _on_triangles(triangles)
-    normals = np.repeat(hull.equations[:, :3], len(points) // len(triangles), axis=0)
+    points_of_each = len(points) // len(triangles)
+    normals = np.repeat(planes[:, :3], points_of_each, axis=0)
     points = points + body.radius * normals  # round edges are met by the distance from the others' points
 
     def _inside(rows: Array) -> Array:
-        found = (rows @ hull.equations[:, :3].T + hull.equations[:, 3]).max(axis=1)
-        order = np.argsort(found, kind="stable")
-        for first in range(0, len(rows), _BATCH):  # outside that is too little: made exact, the nearest first
-            some = order[first:first + _BATCH]
-            some = some[found[some] > 0]
-            found[some] = _from_triangles(rows[some], triangles)
-            if first + _BATCH >= len(rows) or found[order[:first + _BATCH]].min() <= found[order[first + _BATCH]]:
-                break
-        return np.asarray(found - body.radius)
+        return _from_hull(rows, planes, triangles) - body.radius
 
     return RigidBody(body.name, body.carried, points, spacing, _inside)
+
+
+def _from_hull(points: Array, planes: Array, triangles: Array) -> Array:
+    """Distance of points from a hull with planes (n, 4) of triangles, negative inside: exact where it may be least."""
+    found = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    order = np.argsort(found, kind="stable")
+    for first in range(0, len(points), _BATCH):  # outside that is too little: made exact, the nearest first
+        after = first + _BATCH
+        some = order[first:after]
+        some = some[found[some] > 0]
+        found[some] = _from_triangles(points[some], triangles)
+        if after >= len(points):
+            break
+        if found[order[:after]].min() <= found[order[after]]:
+            break
+    return np.asarray(found)
 
 
 def _from_triangles(points: Array, triangles: Array) -> Array:
@@ -90,17 +101,23 @@ def _from_triangles(points: Array, triangles: Array) -> Array:
     a = triangles[:, 0]
     edges = np.roll(triangles, -1, axis=1) - triangles
     normal = np.cross(edges[:, 0], edges[:, 1])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
+    size = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal /= np.maximum(size, 1e-30)
     above = np.einsum("mkc,kc->mk", points[:, None] - a, normal)
     over = np.ones(above.shape, dtype=bool)
     aside = np.full(above.shape, np.inf)
     for i in range(3):
+        edge = edges[:, i]
         away = points[:, None] - triangles[:, i]
-        over &= np.einsum("mkc,kc->mk", away, np.cross(normal, edges[:, i])) >= 0
-        size = np.maximum((edges[:, i] ** 2).sum(axis=1), 1e-30)
-        along = np.clip(np.einsum("mkc,kc->mk", away, edges[:, i]) / size, 0.0, 1.0)
-        aside = np.minimum(aside, lengths(away - along[..., None] * edges[:, i]))
-    return np.asarray(np.where(over, np.abs(above), aside).min(axis=1, initial=np.inf))
+        inwards = np.cross(normal, edge)
+        over &= np.einsum("mkc,kc->mk", away, inwards) >= 0
+        square = np.maximum((edge**2).sum(axis=1), 1e-30)
+        along = np.einsum("mkc,kc->mk", away, edge) / square
+        along = np.clip(along, 0.0, 1.0)
+        from_edge = lengths(away - along[..., None] * edge)
+        aside = np.minimum(aside, from_edge)
+    distance = np.where(over, np.abs(above), aside)
+    return np.asarray(distance.min(axis=1, initial=np.inf))
 
 
 def _on_triangles(triangles: Array) -> tuple[Array, float]:
@@ -108,12 +125,16 @@ def _on_triangles(triangles: Array) -> tuple[Array, float]:
     sides = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2)
     longest = float(sides.max())
     most = int(np.sqrt(2 * _POINTS / len(triangles)))
-    count = int(np.clip(np.ceil(longest / _APART), 1, max(most, 1)))
-    i, j = np.meshgrid(np.arange(count + 1), np.arange(count + 1), indexing="ij")
-    keep = i + j <= count
-    a, b = i[keep] / count, j[keep] / count
+    wanted = np.ceil(longest / _APART)
+    parts = int(np.clip(wanted, 1, max(most, 1)))
+    steps = np.arange(parts + 1)
+    i, j = np.meshgrid(steps, steps, indexing="ij")
+    keep = i + j <= parts
+    a = i[keep] / parts
+    b = j[keep] / parts
     weights = np.stack([1 - a - b, a, b], axis=1)
-    return np.einsum("nw,kwc->knc", weights, triangles).reshape(-1, 3), longest / count
+    points = np.einsum("nw,kwc->knc", weights, triangles)
+    return points.reshape(-1, 3), longest / parts
 
 
 def revolve_rigid_body(name: str, carried: str, line: Array, foot: Array, axis: Array) -> RigidBody:
@@ -127,18 +148,26 @@ def revolve_rigid_body(name: str, carried: str, line: Array, foot: Array, axis: 
     foot, axis : (3,) array
         A point and the direction of its axis, machine coordinates.
     """
-    corners = np.concatenate([[[0.0, line[0, 1]]], line, [[0.0, line[-1, 1]]]])
+    bottom = [[0.0, line[0, 1]]]
+    top = [[0.0, line[-1, 1]]]
+    corners = np.concatenate([bottom, line, top])
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     apart = max(_APART, float(lengths.sum()) * _AROUND / _POINTS)
-    rows = np.concatenate([a + np.linspace(0, 1, max(2, int(np.ceil(size / apart)) + 1))[:, None] * (b - a)
-                           for (a, b), size in zip(pairwise(corners), lengths, strict=True)])
+    sides = []
+    for (a, b), size in zip(pairwise(corners), lengths, strict=True):
+        places = max(2, int(np.ceil(size / apart)) + 1)
+        share = np.linspace(0, 1, places)[:, None]
+        sides.append(a + share * (b - a))
+    rows = np.concatenate(sides)
     helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
     x = np.cross(helper, axis)
     x /= np.linalg.norm(x)
     y = np.cross(axis, x)
     angle = 2 * np.pi * np.arange(_AROUND) / _AROUND
     ring = np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * y
-    points = foot + (rows[:, :1, None] * ring[None] + rows[:, 1:, None] * axis).reshape(-1, 3)
+    outwards = rows[:, :1, None] * ring[None]
+    upwards = rows[:, 1:, None] * axis
+    points = foot + (outwards + upwards).reshape(-1, 3)
 
     def _inside(found: Array) -> Array:
         away = found - foot
@@ -146,25 +175,28 @@ def revolve_rigid_body(name: str, carried: str, line: Array, foot: Array, axis: 
         radius = np.linalg.norm(away - height[:, None] * axis, axis=1)
         return _from_line(corners, np.stack([radius, height], axis=1))
 
-    return RigidBody(name, carried, points, max(apart, 2 * np.pi * float(line[:, 0].max()) / _AROUND), _inside)
+    between_rings = 2 * np.pi * float(line[:, 0].max()) / _AROUND
+    return RigidBody(name, carried, points, max(apart, between_rings), _inside)
 
 
 def _from_line(corners: Array, places: Array) -> Array:
     """Distance of places (radius, height) from the area between a polyline and the axis, negative inside."""
+    radius, height = places.T
     least = np.full(len(places), np.inf)
     crossings = np.zeros(len(places), dtype=int)
     for (r0, z0), (r1, z1) in pairwise(corners):
         way = np.array([r1 - r0, z1 - z0])
-        size = (r1 - r0) ** 2 + (z1 - z0) ** 2
+        square = (r1 - r0) ** 2 + (z1 - z0) ** 2
         offset = places - [r0, z0]
-        along = np.clip((offset @ way) / max(size, 1e-30), 0.0, 1.0)
-        least = np.minimum(least, lengths(offset - along[:, None] * way))
+        along = np.clip((offset @ way) / max(square, 1e-30), 0.0, 1.0)
+        away = lengths(offset - along[:, None] * way)
+        least = np.minimum(least, away)
         # A place is inside where a ray outwards from it, at its height, crosses the line an odd number of times.
-        radius, height = places.T
-        between = (np.minimum(z0, z1) <= height) & (height < np.maximum(z0, z1))
+        begins_below = np.minimum(z0, z1) <= height
+        ends_above = height < np.maximum(z0, z1)
         rise = z1 - z0 if z1 != z0 else 1.0
         at = r0 + (height - z0) * (r1 - r0) / rise
-        crossings += between & (at > radius)
+        crossings += begins_below & ends_above & (at > radius)
     return np.where(crossings % 2 == 1, -least, least)
 
 
@@ -175,9 +207,12 @@ def cutter_line(profile: Profile) -> Array:
     ----------
     profile : Profile
     """
-    a, r, beta = profile.flat_radius, profile.corner_radius, profile.half_angle
+    r = profile.corner_radius
+    beta = profile.half_angle
     angle = np.linspace(0.0, np.pi / 2 - beta, _ARC + 1)
-    arc = np.stack([a + r * np.sin(angle), r * (1 - np.cos(angle))], axis=1)
+    radius = profile.flat_radius + r * np.sin(angle)
+    height = r * (1 - np.cos(angle))
+    arc = np.stack([radius, height], axis=1)
     end_radius, end_height = arc[-1]
     rise = profile.top - end_height
     top = [end_radius + rise * np.tan(beta), profile.top]

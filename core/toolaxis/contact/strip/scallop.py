@@ -21,19 +21,31 @@ RA_SHARE = 4 / (9 * np.sqrt(3))
 def _heights(face: Face, cutter: CutterParameters, pair: tuple[StripContacts, StripContacts], axes: Array,
              along: int) -> Array:
     """Heights at which two contacts each reach each other: secants of the reach's square within a bracket."""
-    surface = OrientedSurface(face.surface.data, -1.0 if face.flip else 1.0)
-    radius, step = cutter.flat + cutter.corner, 1 - along
-    apart = pair[1].uv[:, step] - pair[0].uv[:, step]
-    low, high, h = np.zeros(len(apart)), np.full(len(apart), radius), np.full(len(apart), 0.01 * radius)
+    sign = -1.0 if face.flip else 1.0
+    surface = OrientedSurface(face.surface.data, sign)
+    options = StripOptions(along, False)
+    radius = cutter.flat + cutter.corner
+    step = 1 - along
+    before, behind = pair
+    apart = behind.uv[:, step] - before.uv[:, step]
+    low = np.zeros(len(apart))
+    high = np.full(len(apart), radius)
+    h = np.full(len(apart), 0.01 * radius)
+    least_change = 1e-12 * radius
     for _ in range(60):
-        upper, lower = (take_half_widths(surface, cutter, contacts._replace(scallop=h), axes[None],
-                                         StripOptions(along, False))[0] for contacts in pair)
+        upper = take_half_widths(surface, cutter, before._replace(scallop=h), axes[None], options)[0]
+        lower = take_half_widths(surface, cutter, behind._replace(scallop=h), axes[None], options)[0]
         reach = upper[:, 1] + lower[:, 0]
         short = reach < apart
-        low, high = np.where(short, h, low), np.where(short, high, h)
-        ahead = np.where(reach > 0, h * (apart / np.where(reach > 0, reach, 1.0)) ** 2, high)
-        ahead = np.where((low < ahead) & (ahead < high), ahead, (low + high) / 2)
-        done = (np.abs(ahead - h) <= 1e-12 * radius) | (high - low <= 1e-12 * radius)
+        low = np.where(short, h, low)
+        high = np.where(short, high, h)
+        reaches = reach > 0
+        share = apart / np.where(reaches, reach, 1.0)
+        secant = np.where(reaches, h * share**2, high)
+        is_between = (low < secant) & (secant < high)
+        ahead = np.where(is_between, secant, (low + high) / 2)
+        stands = np.abs(ahead - h) <= least_change
+        done = stands | (high - low <= least_change)
         if done.all():
             break
         h = np.where(done, h, ahead)
@@ -71,19 +83,27 @@ def scallop_height(face: Face, tool: Tool, uv: ArrayLike, neighbour: ArrayLike, 
     -----
     The height h at which the half widths of the two, towards each other, reach their distance; they grow like sqrt h.
     """
-    (first, along), (second, _) = kernel_contacts(uv, feed, 0.0), kernel_contacts(neighbour, feed, 0.0)
-    one, two = first.uv, second.uv
+    first, along = kernel_contacts(uv, feed, 0.0)
+    second, _ = kernel_contacts(neighbour, feed, 0.0)
+    one = first.uv
+    two = second.uv
     if one.shape != two.shape:
         raise InvalidInput(f"{len(one)} contacts have {len(two)} neighbours: give one for each")
     step = 1 - along
-    bad = np.flatnonzero((one[:, along] != two[:, along]) | (one[:, step] == two[:, step]))
+    differ_along = one[:, along] != two[:, along]
+    agree_across = one[:, step] == two[:, step]
+    bad = np.flatnonzero(differ_along | agree_across)
     if bad.size:
-        raise InvalidInput(f"contacts {bad[0]} are {one[bad[0]].tolist()} and {two[bad[0]].tolist()}: neighbours must "
+        k = bad[0]
+        raise InvalidInput(f"contacts {k} are {one[k].tolist()} and {two[k].tolist()}: neighbours must "
                            f"share {feed} and differ in the other parameter")
     behind = (one[:, step] > two[:, step])[:, None]
-    pair = first._replace(uv=np.where(behind, two, one)), second._replace(uv=np.where(behind, one, two))
-    axes = np.broadcast_to(unit(as_rows(axis, 3, "axis")), (len(one), 3))
-    return _heights(face, cutter_parameters(tool, tool.radius / 2, allowance), pair, axes, along)
+    lower = first._replace(uv=np.where(behind, two, one))
+    upper = second._replace(uv=np.where(behind, one, two))
+    directions = unit(as_rows(axis, 3, "axis"))
+    axes = np.broadcast_to(directions, (len(one), 3))
+    cutter = cutter_parameters(tool, tool.radius / 2, allowance)
+    return _heights(face, cutter, (lower, upper), axes, along)
 
 
 def effective_radius(tool: Tool, lean: ArrayLike, direction: ArrayLike = 0.0) -> Array:
@@ -107,9 +127,12 @@ def effective_radius(tool: Tool, lean: ArrayLike, direction: ArrayLike = 0.0) ->
     **Source**: [dong2023] Eq. (14) for omega = 0; the second-order swept width of `second_order` on a plane.
     """
     if tool.flat_radius == 0:
-        return np.broadcast_to(np.asarray(tool.corner_radius), np.broadcast(lean, direction).shape).astype(float)
+        shape = np.broadcast(lean, direction).shape
+        corner = np.asarray(tool.corner_radius)
+        return np.broadcast_to(corner, shape).astype(float)
     with np.errstate(divide="ignore"):
-        return np.asarray(tool.corner_radius + tool.flat_radius * np.cos(direction) ** 2 / np.sin(lean))
+        by_flat = tool.flat_radius * np.cos(direction) ** 2 / np.sin(lean)
+    return np.asarray(tool.corner_radius + by_flat)
 
 
 def step_from_scallop(scallop: ArrayLike, radius: ArrayLike, curvature: ArrayLike = 0.0) -> Array:

@@ -1,7 +1,8 @@
 """Pictures of what a machine can do: its jerk along a feed, the best over all feeds, and the speed along a pass."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -36,26 +37,52 @@ def polytope_figure(mounting: Mounting, level: Level, feed: ArrayLike, setups: M
     setups : mapping of str to (m,) array_like
         Names and rotary angles, rad; a panel for each.
     """
-    way, limits = unit(as_rows(feed, 3, "feed direction")[0]), box(mounting.machine, level) / 1000
-    corners = box_vertices(limits)
+    way = unit(as_rows(feed, 3, "feed direction")[0])
+    limits = box(mounting.machine, level) / 1000
     reach = 1.05 * float(np.linalg.norm(limits))
     made = figure(4.4 * len(setups), 4.6)
     for k, (name, rotary) in enumerate(setups.items()):
         ax = made.add_subplot(1, len(setups), k + 1, projection="3d")
         turn = part_from_machine(mounting.machine, rotary, mounting.table_from_part)[0]
-        for a, b in combinations(range(len(corners)), 2):
-            if int((np.sign(corners[a]) != np.sign(corners[b])).sum()) == 1:
-                ax.plot(*(turn @ corners[[a, b]].T), color=BLUE, linewidth=1.2)
-        tip = way * float(np.min(limits / np.maximum(np.abs(np.linalg.solve(turn, way)), 1e-12)))
-        ax.plot(*np.stack([np.zeros(3), tip]).T, color=VERMILION, linewidth=2.5)
+        for begin, end in _box_edges(limits):
+            _draw_line(ax, turn @ begin, turn @ end, color=BLUE, linewidth=1.2)
+        tip = way * _reach_along(way, turn, limits)
+        _draw_line(ax, np.zeros(3), tip, color=VERMILION, linewidth=2.5)
         ax.scatter(*tip, color=VERMILION, s=25)
-        angles = ", ".join(f"{axis.name} = {value:.1f}°" for axis, value in
-                           zip(mounting.machine.rotary, np.degrees(np.atleast_1d(rotary)) + 0.0, strict=True))
+        angles = _angle_words(mounting, rotary)
         ax.set_title(f"{name}: {angles}\n{np.linalg.norm(tip):.2f} {_UNITS[level]} along the feed", fontsize=9)
-        ax.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach), xlabel="x", ylabel="y", zlabel="z")
+        ax.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach))
+        ax.set(xlabel="x", ylabel="y", zlabel="z")
         ax.set_box_aspect((1, 1, 1), zoom=0.85)
         ax.tick_params(labelsize=7)
     return made
+
+
+def _box_edges(limits: Array) -> Iterator[tuple[Array, Array]]:
+    """Ends of the edges of a box around zero: corners of which one coordinate has another sign."""
+    for one, other in combinations(box_vertices(limits), 2):
+        differs = np.sign(one) != np.sign(other)
+        if int(differs.sum()) == 1:
+            yield one, other
+
+
+def _draw_line(ax: Any, begin: Array, end: Array, **style: Any) -> None:
+    """Draw a straight line between two points in space."""
+    x, y, z = np.stack([begin, end]).T
+    ax.plot(x, y, z, **style)
+
+
+def _reach_along(way: Array, turn: Array, limits: Array) -> float:
+    """How far a box that is turned reaches along a direction."""
+    shares = np.abs(np.linalg.solve(turn, way))
+    return float(np.min(limits / np.maximum(shares, 1e-12)))
+
+
+def _angle_words(mounting: Mounting, rotary: ArrayLike) -> str:
+    """The angles of rotary axes, each with the axis's name."""
+    angles = np.degrees(np.atleast_1d(rotary)) + 0.0
+    words = [f"{axis.name} = {value:.1f}°" for axis, value in zip(mounting.machine.rotary, angles, strict=True)]
+    return ", ".join(words)
 
 
 def reach_figure(mounting: Mounting, level: Level) -> Figure:
@@ -72,15 +99,21 @@ def reach_figure(mounting: Mounting, level: Level) -> Figure:
     **Source** [grandguillaume2021] Figs. 10 and 12.
     """
     machine = mounting.machine
-    tilt, turn = np.meshgrid(np.linspace(0, np.pi / 2, 181), np.linspace(0, 2 * np.pi, 361), indexing="ij")
-    feeds = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=-1).reshape(-1, 3)
-    values = best_along(machine, level, feeds).reshape(tilt.shape) / 1000
+    tilts = np.linspace(0, np.pi / 2, 181)
+    turns = np.linspace(0, 2 * np.pi, 361)
+    tilt, turn = np.meshgrid(tilts, turns, indexing="ij")
+    cosine = np.cos(turn)
+    sine = np.sin(turn)
+    level_part = np.sin(tilt)
+    feeds = np.stack([level_part * cosine, level_part * sine, np.cos(tilt)], axis=-1)
+    values = best_along(machine, level, feeds.reshape(-1, 3)).reshape(tilt.shape) / 1000
     made = figure(5.6, 4.6)
     ax = made.subplots()
-    shown = ax.pcolormesh(2 * np.sin(tilt / 2) * np.cos(turn), 2 * np.sin(tilt / 2) * np.sin(turn), values,
-                          shading="gouraud", cmap="viridis")
+    # Equal areas of the picture are equal parts of the hemisphere.
+    radius = 2 * np.sin(tilt / 2)
+    shown = ax.pcolormesh(radius * cosine, radius * sine, values, shading="gouraud", cmap="viridis")
     edge = 2 * np.sin(pole_zone(machine, level) / 2)
-    ax.plot(edge * np.cos(turn[0]), edge * np.sin(turn[0]), color="white", linewidth=1.2, linestyle="--")
+    ax.plot(edge * cosine[0], edge * sine[0], color="white", linewidth=1.2, linestyle="--")
     ax.annotate("no corner is met inside", (0, 0), xytext=(0, -3), textcoords="offset points", color="white",
                 fontsize=8, horizontalalignment="center")
     ax.set_aspect("equal")
@@ -104,7 +137,8 @@ def feed_figure(passes: Mapping[str, CurveSchedule], feed: float) -> Figure:
     ax = made.subplots()
     for (name, found), colour in zip(passes.items(), _COLOURS, strict=False):
         places, speeds = speeds_along(found)
-        ax.plot(places, 0.06 * speeds, color=colour, linewidth=1.6, label=f"{name}: {found.duration:.3f} s")
+        label = f"{name}: {found.duration:.3f} s"
+        ax.plot(places, 0.06 * speeds, color=colour, linewidth=1.6, label=label)
     if np.isfinite(feed):
         ax.axhline(0.06 * feed, color="black", linewidth=0.8, linestyle=":", label="programmed")
     ax.set(xlabel="way along the pass, mm", ylabel="feed, m/min", ylim=(0, None))
@@ -122,5 +156,6 @@ def speeds_along(found: CurveSchedule) -> tuple[Array, Array]:
     ----------
     found : CurveSchedule
     """
-    state = found.path_at(np.linspace(0.0, found.duration, _TIMES))
+    times = np.linspace(0.0, found.duration, _TIMES)
+    state = found.path_at(times)
     return state[:, 0], state[:, 1]

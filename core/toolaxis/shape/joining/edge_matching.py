@@ -48,18 +48,23 @@ def sides_of(face: Face) -> list[OpenEdge]:
     """
     sides = []
     for index, loop in enumerate(face.outline):
-        left = (signed_area(loop) > 0) == (index == 0)
+        is_outer = index == 0
+        left = (signed_area(loop) > 0) == is_outer
         closed = np.concatenate([loop, loop[:1]])
-        pieces = [closed[k:k + 2] for k in range(len(loop))] if len(loop) <= 8 else [closed]
+        pieces = [closed]
+        if len(loop) <= 8:
+            pieces = [closed[k:k + 2] for k in range(len(loop))]
         for piece in pieces:
             uv = _refine_line(piece)
-            sides.append(OpenEdge(face.number, face.evaluate(uv).point, uv, left))
+            points = face.evaluate(uv).point
+            sides.append(OpenEdge(face.number, points, uv, left))
     return sides
 
 
 def _refine_line(line: Array) -> Array:
-    count = max(1, -(-SAMPLES // (len(line) - 1)))
-    share = (np.arange(count) / count)[:, None]
+    parts = -(-SAMPLES // (len(line) - 1))
+    parts = max(1, parts)
+    share = (np.arange(parts) / parts)[:, None]
     inner = [a + share * (b - a) for a, b in pairwise(line)]
     return np.concatenate([*inner, line[-1:]])
 
@@ -80,15 +85,19 @@ def match_edges(sides: Sequence[OpenEdge], size: float) -> list[Border]:
     borders = []
     for k, side in enumerate(sides):
         near = NEAR * max(size, _length(side.points))
-        close = ((low[k] <= high[k + 1:] + near) & (low[k + 1:] <= high[k] + near)).all(axis=1)
-        for other in (sides[k + 1 + int(j)] for j in np.flatnonzero(close)):
+        begins_before = low[k] <= high[k + 1:] + near
+        ends_behind = low[k + 1:] <= high[k] + near
+        close = (begins_before & ends_behind).all(axis=1)
+        for j in np.flatnonzero(close):
+            other = sides[k + 1 + int(j)]
             if other.face != side.face:
                 borders += _together(side, other, near)
     return borders
 
 
 def _length(points: Array) -> float:
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    steps = np.diff(points, axis=0)
+    return float(np.linalg.norm(steps, axis=1).sum())
 
 
 def _together(one: OpenEdge, other: OpenEdge, near: float) -> list[Border]:
@@ -97,21 +106,32 @@ def _together(one: OpenEdge, other: OpenEdge, near: float) -> list[Border]:
         one, other = other, one
     distance, uv, place = _nearest(one.points, other)
     on = np.concatenate([[False], distance <= near, [False]])
-    starts, ends = np.flatnonzero(~on[:-1] & on[1:]), np.flatnonzero(on[:-1] & ~on[1:])
-    runs = [slice(a, b) for a, b in zip(starts, ends, strict=True) if b - a > 1]
-    return [Border((one.face, other.face), one.points[run], one.uv[run], uv[run], one.left,
-                   other.left ^ bool(np.median(np.diff(place[run])) < 0)) for run in runs
-            if _length(one.points[run]) > 10 * near]
+    starts = np.flatnonzero(~on[:-1] & on[1:])
+    ends = np.flatnonzero(on[:-1] & ~on[1:])
+    borders = []
+    for begin, end in zip(starts, ends, strict=True):
+        run = slice(begin, end)
+        points = one.points[run]
+        if len(points) < 2 or _length(points) <= 10 * near:
+            continue
+        runs_back = bool(np.median(np.diff(place[run])) < 0)
+        borders.append(Border((one.face, other.face), points, one.uv[run], uv[run], one.left, other.left ^ runs_back))
+    return borders
 
 
 def _nearest(points: Array, side: OpenEdge) -> tuple[Array, Array, Array]:
     """Distance of points from a side's polyline, the side's parameters there, and how far along it, in segments."""
-    start, course = side.points[:-1], np.diff(side.points, axis=0)
+    start = side.points[:-1]
+    course = np.diff(side.points, axis=0)
+    offset = points[:, None] - start
     square = np.maximum((course**2).sum(axis=1), 1e-300)
-    share = np.clip(np.einsum("nkc,kc->nk", points[:, None] - start, course) / square, 0.0, 1.0)
-    away = np.linalg.norm(points[:, None] - start - share[..., None] * course, axis=2)
+    share = np.einsum("nkc,kc->nk", offset, course) / square
+    share = np.clip(share, 0.0, 1.0)
+    away = np.linalg.norm(offset - share[..., None] * course, axis=2)
     best = away.argmin(axis=1)
     rows = np.arange(len(points))
-    t = share[rows, best][:, None]
-    uv = side.uv[best] + t * (side.uv[best + 1] - side.uv[best])
-    return away[rows, best], uv, best + t[:, 0]
+    t = share[rows, best]
+    begin = side.uv[best]
+    step = side.uv[best + 1] - begin
+    uv = begin + t[:, None] * step
+    return away[rows, best], uv, best + t
