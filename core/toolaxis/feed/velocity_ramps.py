@@ -70,9 +70,10 @@ def durations(bend: CurveShape, joint_from_path: ArrayLike, feed: float, bounds:
     """
     matrices = np.asarray(joint_from_path, dtype=float)
     best = np.full(len(matrices), np.inf)
+    places = bend.derivatives[0].shape[-2]
     for begin in range(0, len(matrices), _BATCH):
         some = slice(begin, begin + _BATCH)
-        for number in _numbers(bend.derivatives[0].shape[-2]):
+        for number in _numbers(places):
             windows = _ramps_in_windows(matrices[some], bend, number, feed, bounds)
             best[some] = np.minimum(best[some], _times(windows))
     return best
@@ -101,10 +102,12 @@ def bend_of(points: ArrayLike, tips: ArrayLike, feed: float, width: int = 3, tol
     """
     joints, _, along = check_path(points, tips, feed, width)
     curve = fit_smooth_curve(along, joints, tolerance)
-    count = int(np.clip(_PLACES * len(np.unique(curve.t)), 16 * _PLACES, _MOST))
-    s = (np.arange(count) + 0.5) * (along[-1] / count)
+    length = along[-1]
+    knots = len(np.unique(curve.t))
+    places = int(np.clip(_PLACES * knots, 16 * _PLACES, _MOST))
+    s = (np.arange(places) + 0.5) * (length / places)
     first, second, third = (np.asarray(curve(s, order)) for order in (1, 2, 3))
-    return CurveShape(float(along[-1]), (first, second, third))
+    return CurveShape(float(length), (first, second, third))
 
 
 def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
@@ -124,15 +127,18 @@ def bends_of(points: ArrayLike, along: ArrayLike) -> CurveShape:
     end = places[-1]
     inner = places[_APART:-_APART:_APART]
     knots = np.concatenate([np.full(DEGREE + 1, begin), inner, np.full(DEGREE + 1, end)])
-    curve = make_lsq_spline(places, rows.swapaxes(0, 1).reshape(n, -1), knots, DEGREE)
-    count = int(np.clip(n, 16 * _PLACES, _MOST))
-    s = begin + (np.arange(count) + 0.5) * ((end - begin) / count)
-    first, second = (np.asarray(curve(s, order)).reshape(count, ways, 3).swapaxes(0, 1) for order in (1, 2))
+    by_place = rows.swapaxes(0, 1).reshape(n, -1)
+    curve = make_lsq_spline(places, by_place, knots, DEGREE)
+    number = int(np.clip(n, 16 * _PLACES, _MOST))
+    step = (end - begin) / number
+    s = begin + (np.arange(number) + 0.5) * step
+    first, second = (np.asarray(curve(s, order)).reshape(number, ways, 3).swapaxes(0, 1) for order in (1, 2))
     stretch = np.linalg.norm(first, axis=2)
     pace = np.maximum(stretch, _NOTHING)[..., None]
     way = first / pace
     along_way = (way * second).sum(axis=2, keepdims=True)
-    bent = (second - along_way * way) / pace**2
+    across = second - along_way * way
+    bent = across / pace**2
     change = np.gradient(bent, s, axis=1) / pace
     return CurveShape(float(end - begin), (way, bent, change), stretch)
 
@@ -145,21 +151,35 @@ def greatest_speeds(bend: CurveShape, joint_from_path: ArrayLike, feed: float, b
     bend, joint_from_path, feed, bounds
         As for `durations`.
     """
-    matrices = np.asarray(joint_from_path, dtype=float).swapaxes(1, 2)
-    first, second, third = (np.abs(rows @ matrices) + _NOTHING for rows in bend.derivatives)
-    return _tops((first, second, third), feed, bounds, (1.0, 1.0))
+    matrices = np.asarray(joint_from_path, dtype=float)
+    joints = _joint_derivatives(bend, matrices)
+    return _tops(joints, feed, bounds, 1.0, 1.0)
 
 
-def _tops(bend: tuple[Array, Array, Array], feed: float, bounds: AxisBounds, shares: tuple[float, float]) -> Array:
-    """Greatest speeds at which a curve, its derivatives above 0, takes no more than shares of accelerations and jerks.
-    """
-    first, second, third = bend
-    of_acceleration, of_jerk = shares
-    by_velocity = (bounds.velocity / first).min(axis=2)
-    by_acceleration = np.sqrt((of_acceleration * bounds.acceleration / second).min(axis=2))
-    by_jerk = np.cbrt((of_jerk * bounds.jerk / third).min(axis=2))
-    top = np.minimum(np.minimum(feed, by_velocity), by_acceleration)
-    return np.asarray(np.minimum(top, by_jerk))
+class _JointDerivatives(NamedTuple):
+    """Sizes of the axes' derivatives along the path in k set-ups at n places, above 0, (k, n, m) each."""
+
+    first: Array
+    second: Array
+    third: Array
+
+
+def _joint_derivatives(bend: CurveShape, matrices: Array) -> _JointDerivatives:
+    """What the axes move along a curve with set-ups (k, m, d)."""
+    turned = matrices.swapaxes(1, 2)
+    first, second, third = (np.abs(rows @ turned) + _NOTHING for rows in bend.derivatives)
+    return _JointDerivatives(first, second, third)
+
+
+def _tops(joints: _JointDerivatives, feed: float, bounds: AxisBounds, of_acceleration: float,
+          of_jerk: float) -> Array:
+    """Greatest speeds at which a curve takes no more than shares of accelerations and jerks."""
+    by_velocity = (bounds.velocity / joints.first).min(axis=2)
+    square = (of_acceleration * bounds.acceleration / joints.second).min(axis=2)
+    cube = (of_jerk * bounds.jerk / joints.third).min(axis=2)
+    top = np.minimum(feed, by_velocity)
+    top = np.minimum(top, np.sqrt(square))
+    return np.asarray(np.minimum(top, np.cbrt(cube)))
 
 
 class _Windows(NamedTuple):
@@ -177,17 +197,19 @@ def _numbers(count: int) -> list[int]:
 
 def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: float, bounds: AxisBounds) -> _Windows:
     """Ramps between a number of windows of one length."""
-    count = bend.derivatives[0].shape[-2]
-    starts = np.searchsorted(np.arange(count) * number // count, np.arange(number))
-    joints = [np.abs(rows @ matrices.swapaxes(1, 2)) + _NOTHING for rows in bend.derivatives]
+    places = bend.derivatives[0].shape[-2]
+    window = np.arange(places) * number // places
+    starts = np.searchsorted(window, np.arange(number))
+    joints = _joint_derivatives(bend, matrices)
     first, second, third = (np.maximum.reduceat(each, starts, axis=1) for each in joints)
-    top = _tops((first, second, third), feed, bounds, (_BEND, _CURVE))
+    top = _tops(_JointDerivatives(first, second, third), feed, bounds, _BEND, _CURVE)
     speed = top[..., None]
     # What the bend leaves of the limits at the greatest speed is for the ramps.
-    left = (bounds.acceleration - second * speed**2) / first
+    by_acceleration = (bounds.acceleration - second * speed**2) / first
     by_jerk = _CROSS * bounds.jerk / (3 * second * speed)
-    a = np.minimum(left, by_jerk).min(axis=2)
-    j = ((bounds.jerk - third * speed**3 - 3 * second * speed * a[..., None]) / first).min(axis=2)
+    a = np.minimum(by_acceleration, by_jerk).min(axis=2)
+    left = bounds.jerk - third * speed**3 - 3 * second * speed * a[..., None]
+    j = (left / first).min(axis=2)
     caps = np.zeros((len(top), number + 1))
     caps[:, 1:-1] = np.minimum(top[:, :-1], top[:, 1:])
     run = np.full(a.shape, bend.length / number)
@@ -200,4 +222,5 @@ def _ramps_in_windows(matrices: Array, bend: CurveShape, number: int, feed: floa
 def _times(windows: _Windows) -> Array:
     """Time of each set-up, (k,) s."""
     ends = (windows.speeds[:, :-1], windows.speeds[:, 1:])
-    return np.asarray(travel_time(windows.run, *windows.limits, ends).sum(axis=1))
+    times = travel_time(windows.run, *windows.limits, ends)
+    return np.asarray(times.sum(axis=1))

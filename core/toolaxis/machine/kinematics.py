@@ -9,6 +9,7 @@ where those of the table stand before m and those of the head make up H.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,17 +90,30 @@ def rotary_angles(machine: Machine, axes: ArrayLike, near: ArrayLike = (), table
     return AxisSolutions(angles, reached, within, free, determinant)
 
 
-def _turns(machine: Machine, rows: Array) -> tuple[Array, Bools, Bools, Array]:
-    """Angles of each branch, reached, free and determinant for tool axes on the table."""
-    count, rotary, spindle = len(rows), machine.rotary, np.asarray(machine.spindle)
+class _RotarySolutions(NamedTuple):
+    """Angles (n, branches, m) that give tool axes on the table, with the rest as in `AxisSolutions`."""
+
+    angles: Array
+    reached: Bools
+    free: Bools
+    determinant: Array
+
+
+def _turns(machine: Machine, rows: Array) -> _RotarySolutions:
+    """Angles of each branch for tool axes on the table."""
+    number = len(rows)
+    rotary = machine.rotary
+    spindle = np.asarray(machine.spindle)
+    regular = np.ones(number)
     if len(rotary) == 2:
         found = two_turns(rotary[0].direction, rotary[1].direction, spindle, rows)
-        return found.angles, found.reached, found.free, found.determinant
+        return _RotarySolutions(found.angles, found.reached, found.free, found.determinant)
     if len(rotary) == 1:
         angles, reached, free = one_turn(rotary[0].direction, spindle, rows)
-        return angles[:, None, None], reached, free, np.ones(count)
+        return _RotarySolutions(angles[:, None, None], reached, free, regular)
     reached = angle_between(rows, spindle) <= STRAIGHT
-    return np.empty((count, 1, 0)), reached, np.zeros(count, dtype=bool), np.ones(count)
+    none_free = np.zeros(number, dtype=bool)
+    return _RotarySolutions(np.empty((number, 1, 0)), reached, none_free, regular)
 
 
 def nearest_turn(machine: Machine, solutions: ArrayLike, stand: ArrayLike) -> Array:
@@ -114,11 +128,14 @@ def nearest_turn(machine: Machine, solutions: ArrayLike, stand: ArrayLike) -> Ar
     stand : (m,) array_like
         rad
     """
-    near, here = np.array(solutions, dtype=float), np.asarray(stand, dtype=float)
+    near = np.array(solutions, dtype=float)
+    here = np.asarray(stand, dtype=float)
     for i, axis in enumerate(machine.rotary):
         near[:, i], _ = axis.within(near[:, i], here[i])
-    turns = np.abs(near - here).max(axis=1, initial=0.0)
-    return np.asarray(near[int(np.argmin(np.round(turns, 9)))])
+    turns = np.abs(near - here)
+    largest = turns.max(axis=1, initial=0.0)
+    best = int(np.argmin(np.round(largest, 9)))
+    return np.asarray(near[best])
 
 
 def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, tool_length: float = 0.0,
@@ -138,11 +155,15 @@ def linear_coordinates(machine: Machine, points: ArrayLike, rotary: ArrayLike, t
         Where the part stands on the table, all axes at zero.
     """
     where = placement(table_from_part)
-    rows = as_rows(points, 3, "points") @ where[:3, :3].T + where[:3, 3]
+    turn = where[:3, :3]
+    shift = where[:3, 3]
+    rows = as_rows(points, 3, "points") @ turn.T + shift
     angles = _angles(machine, rotary, len(rows))
     for i, axis in enumerate(machine.table):
         rows = _about(rows, axis, -angles[:, i])
-    return np.asarray(np.linalg.solve(machine.directions, (rows - _tip(machine, angles, tool_length)).T).T)
+    moved = rows - _tip(machine, angles, tool_length)
+    coordinates = np.linalg.solve(machine.directions, moved.T)
+    return np.asarray(coordinates.T)
 
 
 def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: float = 0.0,
@@ -169,13 +190,16 @@ def inverse(machine: Machine, points: ArrayLike, axes: ArrayLike, tool_length: f
     found = rotary_angles(machine, axes, near, table_from_part)
     if len(found.reached) != len(rows):
         raise InvalidInput(f"{len(found.reached)} tool axes for {len(rows)} points: one for each is needed")
-    joints = np.empty((*found.joints.shape[:2], 3 + len(machine.rotary)))
+    number, branches = found.joints.shape[:2]
+    joints = np.empty((number, branches, 3 + len(machine.rotary)))
     within = found.within.copy()
-    for branch in range(joints.shape[1]):
-        joints[:, branch, 3:] = found.joints[:, branch]
-        joints[:, branch, :3] = linear_coordinates(machine, rows, found.joints[:, branch], tool_length, table_from_part)
+    for branch in range(branches):
+        rotary = found.joints[:, branch]
+        linear = linear_coordinates(machine, rows, rotary, tool_length, table_from_part)
+        joints[:, branch, 3:] = rotary
+        joints[:, branch, :3] = linear
         for i, axis in enumerate(machine.linear):
-            within[:, branch] &= axis.excess(joints[:, branch, i]) <= 0
+            within[:, branch] &= axis.excess(linear[:, i]) <= 0
     return AxisSolutions(joints, found.reached, within, found.free, found.determinant)
 
 
@@ -194,11 +218,16 @@ def forward(machine: Machine, joints: ArrayLike, tool_length: float = 0.0,
         Where the part stands on the table, all axes at zero.
     """
     rows = as_rows(joints, 3 + len(machine.rotary), "joint coordinates")
-    where, angles = placement(table_from_part), rows[:, 3:]
-    tips = rows[:, :3] @ machine.directions.T + _tip(machine, angles, tool_length)
+    where = placement(table_from_part)
+    turn = where[:3, :3]
+    shift = where[:3, 3]
+    angles = rows[:, 3:]
+    motion = rows[:, :3] @ machine.directions.T
+    tips = motion + _tip(machine, angles, tool_length)
     for i in reversed(range(len(machine.table))):
         tips = _about(tips, machine.table[i], angles[:, i])
-    return (tips - where[:3, 3]) @ where[:3, :3], tool_axes(machine, angles) @ where[:3, :3]
+    axes = tool_axes(machine, angles)
+    return (tips - shift) @ turn, axes @ turn
 
 
 def tool_axes(machine: Machine, rotary: ArrayLike) -> Array:
@@ -235,12 +264,13 @@ def part_from_machine(machine: Machine, rotary: ArrayLike, table_from_part: Arra
     **Source** [grandguillaume2021] Eq. (16) is the case of a table that tilts A and turns C.
     """
     angles = np.atleast_2d(np.asarray(rotary, dtype=float))
+    part_turn = placement(table_from_part)[:3, :3]
     columns = []
     for direction in machine.directions.T:
         rows = np.broadcast_to(direction, (len(angles), 3))
         for i in reversed(range(len(machine.table))):
             rows = rotate_vectors(rows, machine.table[i].direction, angles[:, i])
-        columns.append(rows @ placement(table_from_part)[:3, :3])
+        columns.append(rows @ part_turn)
     return np.stack(columns, axis=2)
 
 

@@ -52,10 +52,14 @@ class Samples:
         -------
         (n,) array of int
         """
-        low, high = self.rectangles[:, [0, 2]], self.rectangles[:, [1, 3]]
-        size = np.maximum(high.max(axis=0) - low.min(axis=0), np.finfo(float).tiny)
-        outside = np.maximum(low - uv[:, None], uv[:, None] - high) / size
-        return np.asarray(np.maximum(outside, 0.0).sum(axis=2).argmin(axis=1), dtype=np.int64)
+        low = self.rectangles[:, [0, 2]]
+        high = self.rectangles[:, [1, 3]]
+        span = high.max(axis=0) - low.min(axis=0)
+        size = np.maximum(span, np.finfo(float).tiny)
+        places = uv[:, None]
+        outside = np.maximum(low - places, places - high) / size
+        distance = np.maximum(outside, 0.0).sum(axis=2)
+        return np.asarray(distance.argmin(axis=1), dtype=np.int64)
 
 
 def sample_points(face: Face, tool: Tool, tolerance: float = 0.1,
@@ -96,46 +100,73 @@ def sample_points(face: Face, tool: Tool, tolerance: float = 0.1,
     if len(weights) != 3 or min(weights) < 0 or not sum(weights) > 0:
         raise InvalidInput(f"weights are {weights}: three numbers of zero or more, not all zero, are needed")
     uv, cell = _grid(face)
-    d = face.evaluate(uv)
-    n = face.normal(uv, d)
-    k = curvatures(d, n)
-    groups = (weights[0] * d.point / face.diagonal, weights[1] * n,
-              weights[2] * tool.radius * np.column_stack([k.k1, k.k2]))
+    groups = _features(face, tool, uv, weights)
     patches = partition(uv, groups, tolerance, np.array(face.bounds))
     extents = np.array([_extent(uv[p.members], cell, p.rectangle) for p in patches])
     means = np.array([uv[p.members].mean(axis=0) for p in patches])
     for i in np.flatnonzero(~face.contains(means)):
         inside = uv[patches[i].members]
-        means[i] = inside[np.argmin((((inside - means[i]) / cell) ** 2).sum(axis=1))]
-    return Samples(means, np.array([p.rectangle for p in patches]), extents)
+        away = (inside - means[i]) / cell
+        square = (away**2).sum(axis=1)
+        means[i] = inside[np.argmin(square)]
+    rectangles = np.array([p.rectangle for p in patches])
+    return Samples(means, rectangles, extents)
+
+
+def _features(face: Face, tool: Tool, uv: Array, weights: tuple[float, float, float]) -> tuple[Array, Array, Array]:
+    """Weighted location, normal and principal curvatures at places of a face, without units."""
+    of_location, of_normal, of_curvature = weights
+    d = face.evaluate(uv)
+    normal = face.normal(uv, d)
+    k = curvatures(d, normal)
+    location = of_location * d.point / face.diagonal
+    bends = of_curvature * tool.radius * np.column_stack([k.k1, k.k2])
+    return location, of_normal * normal, bends
 
 
 def _grid(face: Face) -> tuple[Array, Array]:
     """Even grid of inside points, and the size of its cells."""
     u0, u1, v0, v1 = face.bounds
-    probe = face.evaluate(face.grid(9, 9) if len(face.grid(9, 9)) else np.array([[(u0 + u1) / 2, (v0 + v1) / 2]]))
+    coarse = face.grid(9, 9)
+    if not len(coarse):
+        coarse = np.array([[(u0 + u1) / 2, (v0 + v1) / 2]])
+    probe = face.evaluate(coarse)
     long_u = np.linalg.norm(probe.su, axis=1).mean() * (u1 - u0)
     long_v = np.linalg.norm(probe.sv, axis=1).mean() * (v1 - v0)
-    aspect = np.sqrt(long_u / long_v) if long_u > 0 and long_v > 0 else 1.0
-    nu, nv = (int(np.clip(round(_GRID * a), _GRID / 4, 4 * _GRID)) for a in (aspect, 1 / aspect))
+    aspect = 1.0
+    if long_u > 0 and long_v > 0:
+        aspect = np.sqrt(long_u / long_v)
+    nu = _lines(aspect)
+    nv = _lines(1 / aspect)
     for _ in range(5):
         uv = face.grid(nu, nv)
         if len(uv) >= _ENOUGH:
             break
-        nu, nv = 2 * nu, 2 * nv
+        nu = 2 * nu
+        nv = 2 * nv
     if not len(uv):
         raise UnsupportedGeometry(f"face {face.label} has no point on a {nu} x {nv} grid of its parameters: "
                                   "its trim loops enclose next to nothing; leave it out or repair it")
     return uv, np.array([(u1 - u0) / nu, (v1 - v0) / nv])
 
 
+def _lines(aspect: float) -> int:
+    """Lines of the grid one way, on a face that is so much longer this way than the other."""
+    wanted = round(_GRID * aspect)
+    return int(np.clip(wanted, _GRID / 4, 4 * _GRID))
+
+
 def _extent(inside: Array, cell: Array, rectangle: Array) -> Array:
     """The rectangle, drawn in to half a cell beyond the points on each side where the face does not fill it."""
-    low, high = inside.min(axis=0), inside.max(axis=0)
-    near, far = rectangle[[0, 2]], rectangle[[1, 3]]
-    low = np.where(low - near > 1.01 * cell, low - cell / 2, near)
-    high = np.where(far - high > 1.01 * cell, high + cell / 2, far)
-    return np.array([low[0], high[0], low[1], high[1]])
+    low = inside.min(axis=0)
+    high = inside.max(axis=0)
+    near = rectangle[[0, 2]]
+    far = rectangle[[1, 3]]
+    is_open_below = low - near > 1.01 * cell
+    is_open_above = far - high > 1.01 * cell
+    u0, v0 = np.where(is_open_below, low - cell / 2, near)
+    u1, v1 = np.where(is_open_above, high + cell / 2, far)
+    return np.array([u0, u1, v0, v1])
 
 
 def sample_passes(face: Face, along: int) -> list[Array]:
@@ -153,15 +184,16 @@ def sample_passes(face: Face, along: int) -> list[Array]:
         Parameters of each stretch inside the face, ascending.
     """
     u0, u1, v0, v1 = face.bounds
-    ends = ((u0, u1), (v0, v1))
+    begin, end = (u0, u1) if along == 0 else (v0, v1)
+    low, high = (v0, v1) if along == 0 else (u0, u1)
     across = 1 - along
     found = []
     for share in _ACROSS:
         uv = np.empty((_POINTS, 2))
-        uv[:, along] = np.linspace(*ends[along], _POINTS)
-        uv[:, across] = ends[across][0] + share * (ends[across][1] - ends[across][0])
+        uv[:, along] = np.linspace(begin, end, _POINTS)
+        uv[:, across] = low + share * (high - low)
         inside = np.concatenate([[False], face.contains(uv), [False]])
         starts = np.flatnonzero(~inside[:-1] & inside[1:])
         stops = np.flatnonzero(inside[:-1] & ~inside[1:])
-        found += [uv[begin:end] for begin, end in zip(starts, stops, strict=True)]
+        found += [uv[first:after] for first, after in zip(starts, stops, strict=True)]
     return found

@@ -53,8 +53,10 @@ class LevelChart(FreeChart):
 
     def __post_init__(self) -> None:
         ends = self.field.surface.domain
-        along, across = (np.linspace(*end, _LOOKED) for end in (ends[1 - self._across], ends[self._across]))
-        if not (self._rate(self._join(np.repeat(along, _LOOKED), np.tile(across, _LOOKED))) > 0).all():
+        along = np.linspace(*ends[1 - self._across], _LOOKED)
+        across = np.linspace(*ends[self._across], _LOOKED)
+        everywhere = self._join(np.repeat(along, _LOOKED), np.tile(across, _LOOKED))
+        if not (self._rate(everywhere) > 0).all():
             raise UnsupportedGeometry(f"passes in a field along {self.feed} turn back on face {self.face.label}: "
                                       f"use iso-parametric passes, or {DIVIDE}")
 
@@ -69,57 +71,82 @@ class LevelChart(FreeChart):
 
     def _join(self, along: Array, across: Array) -> Array:
         """Parameters (n, 2) from the one along the passes and the other."""
-        return np.column_stack([along, across] if self.feed == "u" else [across, along])
+        columns = [along, across]
+        if self.feed == "v":
+            columns = [across, along]
+        return np.column_stack(columns)
 
     @property
     def breaks(self) -> tuple[Array, Array]:
         """Inner knots along the passes; those across do not run along them."""
         a0, a1, _, _ = self.bounds
         along = self.face.surface.breaks[1 - self._across]
-        return along[(along > a0) & (along < a1)], np.empty(0)
+        inner = (along > a0) & (along < a1)
+        return along[inner], np.empty(0)
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """Lines, places across on each, and the field there (lines, places), from which levels are looked for."""
         u0, u1, v0, v1 = self.face.bounds
         ends = ((u0, u1), (v0, v1))
-        along, across = ends[1 - self._across], ends[self._across]
-        lines = np.linspace(*along, _LINES)
-        beyond = 0.5 * (across[1] - across[0])
-        places = np.linspace(across[0] - beyond, across[1] + beyond, _PLACES)
+        begin, end = ends[1 - self._across]
+        low, high = ends[self._across]
+        lines = np.linspace(begin, end, _LINES)
+        beyond = 0.5 * (high - low)
+        places = np.linspace(low - beyond, high + beyond, _PLACES)
         uv = self._join(np.repeat(lines, _PLACES), np.tile(places, _LINES))
-        return lines, places, self.field.at(uv).value.reshape(_LINES, _PLACES)
+        values = self.field.at(uv).value
+        return lines, places, values.reshape(_LINES, _PLACES)
 
     def uv(self, along: Array, step: Array) -> Array:
         """Parameters (n, 2) of the face at along and step, (n,) each, by Newton's method; beyond the face too."""
-        lines, places, values = self._table
-        nearest = np.clip(np.rint((along - lines[0]) / (lines[1] - lines[0])), 0, _LINES - 1).astype(int)
-        across = np.empty(len(along))
-        for line in np.unique(nearest):
-            own = nearest == line
-            across[own] = np.interp(step[own], values[line], places)
-        todo, far = np.arange(len(along)), places[-1] - places[0]
+        _, places, values = self._table
+        across = self._first_guess(along, step)
+        far = places[-1] - places[0]
+        farthest_move = 0.25 * far
+        least_rate = 1e-6 * (values[0, -1] - values[0, 0]) / far
+        todo = np.arange(len(along))
         for _ in range(_ITERATIONS):
             uv = self._join(along[todo], across[todo])
             found = self.field.at(uv)
             rate = found.by_v if self.feed == "u" else found.by_u
-            least = 1e-6 * (values[0, -1] - values[0, 0]) / far
-            move = np.clip((step[todo] - found.value) / np.maximum(rate, least), -0.25 * far, 0.25 * far)
+            missing = step[todo] - found.value
+            move = missing / np.maximum(rate, least_rate)
+            move = np.clip(move, -farthest_move, farthest_move)
             across[todo] += move
             todo = todo[np.abs(move) > _EXACT * far]
             if not len(todo):
                 break
         return self._join(along, across)
 
+    def _first_guess(self, along: Array, step: Array) -> Array:
+        """About where the levels lie across the passes, from the nearest line of the table, (n,)."""
+        lines, places, values = self._table
+        nearest = np.rint((along - lines[0]) / (lines[1] - lines[0]))
+        nearest = np.clip(nearest, 0, _LINES - 1).astype(int)
+        across = np.empty(len(along))
+        for line in np.unique(nearest):
+            own = nearest == line
+            across[own] = np.interp(step[own], values[line], places)
+        return across
+
     def places(self, uv: Array) -> Array:
         """Along and step of parameters of the face, (n, 2): the inverse of `uv`."""
-        return np.column_stack([uv[:, 1 - self._across], self.field.at(uv).value])
+        along = uv[:, 1 - self._across]
+        return np.column_stack([along, self.field.at(uv).value])
 
     def feed_at(self, uv: Array) -> Array:
         """Unit feed directions of passes at parameters, (n, 3): along the levels of the field."""
-        d, found = self.face.evaluate(uv), self.field.at(uv)
-        way = d.su * found.by_v[:, None] - d.sv * found.by_u[:, None]
+        way = self._along_levels(uv)
         return np.asarray(unit(way if self.feed == "u" else -way))
+
+    def _along_levels(self, uv: Array) -> Array:
+        """Tangents of the field's levels at parameters, as long as the field is steep, (n, 3)."""
+        d = self.face.evaluate(uv)
+        found = self.field.at(uv)
+        along_u = d.su * found.by_v[:, None]
+        along_v = d.sv * found.by_u[:, None]
+        return np.asarray(along_u - along_v)
 
     def half_widths(self, cut: Cut, along: Array, step: Array) -> Array:
         """Half widths (n, 2) in the step parameter, towards its lower and its upper end.
@@ -128,17 +155,21 @@ class LevelChart(FreeChart):
         """
         uv, feed = self.clip(along, step)
         width = strip_width(self.face, cut.tool, uv, cut.axis, cut.scallop, feed, cut.allowance)
+        to_left, to_right = width.T
         here = self.field.at(uv).value
-        at_right = self.field.at(self._aside(uv, feed, -width[:, 1])).value
-        at_left = self.field.at(self._aside(uv, feed, width[:, 0])).value
+        at_right = self.field.at(self._aside(uv, feed, -to_right)).value
+        at_left = self.field.at(self._aside(uv, feed, to_left)).value
         right = np.abs(at_right - here)
         left = np.abs(at_left - here)
-        left_is_higher = self._left_is_higher(uv, feed)[:, None]
-        return np.where(left_is_higher, np.column_stack([right, left]), np.column_stack([left, right]))
+        left_is_higher = self._left_is_higher(uv, feed)
+        lower = np.where(left_is_higher, right, left)
+        upper = np.where(left_is_higher, left, right)
+        return np.column_stack([lower, upper])
 
     def _left_is_higher(self, uv: Array, feed: Array) -> Bools:
         """Whether the field grows to the left of the feed."""
-        d, left = self.face.evaluate(uv), np.cross(self.face.normal(uv), feed)
+        d = self.face.evaluate(uv)
+        left = np.cross(self.face.normal(uv), feed)
         across = d.sv if self.feed == "u" else d.su
         return np.asarray(dot(across, left) > 0)
 
@@ -148,20 +179,27 @@ class LevelChart(FreeChart):
         The section is a circle of the surface's curvature there, to the third order of the way.
         """
         surface = self.face.surface.spline
-        start, normal = surface.evaluate(uv), self.face.normal(uv)
-        left = np.cross(normal, feed)
-        bend = contact_forms(self.face, uv, feed, False)[:, 11] * way
-        reach = way * np.where(np.abs(bend) > _STRAIGHT, np.sin(bend) / np.where(bend != 0, bend, 1.0), 1.0)
+        start = surface.evaluate(uv).point
+        left = np.cross(self.face.normal(uv), feed)
+        forms = contact_forms(self.face, uv, feed, False)
+        bend = forms[:, 11] * way
+        chord = np.sin(bend) / np.where(bend != 0, bend, 1.0)
+        reach = way * np.where(np.abs(bend) > _STRAIGHT, chord, 1.0)
         found = uv.copy()
         for _ in range(_BORDER):
             d = surface.evaluate(found)
-            off = d.point - start.point
-            miss_f, miss_l = -dot(off, feed), reach - dot(off, left)
-            matrix = dot(d.su, feed), dot(d.sv, feed), dot(d.su, left), dot(d.sv, left)
-            det = matrix[0] * matrix[3] - matrix[1] * matrix[2]
+            away = d.point - start
+            miss_f = -dot(away, feed)
+            miss_l = reach - dot(away, left)
+            u_f = dot(d.su, feed)
+            v_f = dot(d.sv, feed)
+            u_l = dot(d.su, left)
+            v_l = dot(d.sv, left)
+            det = u_f * v_l - v_f * u_l
             det = np.where(np.abs(det) > 1e-300, det, 1e-300)
-            found += np.column_stack([miss_f * matrix[3] - matrix[1] * miss_l,
-                                      matrix[0] * miss_l - matrix[2] * miss_f]) / det[:, None]
+            along_u = miss_f * v_l - v_f * miss_l
+            along_v = u_f * miss_l - u_l * miss_f
+            found += np.column_stack([along_u, along_v]) / det[:, None]
         return found
 
     def screen(self, cut: Cut, along: Array, step: Array) -> Array:
@@ -170,14 +208,16 @@ class LevelChart(FreeChart):
         forms = contact_forms(self.face, uv, feed, False)
         half = np.empty((1, len(forms)))
         screen_numpy(forms, cut.axis[None], cut.numbers, cut.scallop, half)
-        ratio = lean_ratios(cut.leans, forms[:, :3] @ cut.axis, forms[:, 3:6] @ cut.axis)
+        lead = forms[:, :3] @ cut.axis
+        tilt = forms[:, 3:6] @ cut.axis
+        ratio = lean_ratios(cut.leans, lead, tilt)
         return np.asarray(2 * half[0] * ratio * self.gradient(uv))
 
     def gradient(self, uv: Array) -> Array:
         """How fast the field grows across the passes at parameters, (n,) 1/mm."""
-        d, found = self.face.evaluate(uv), self.field.at(uv)
+        d = self.face.evaluate(uv)
         area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
-        along = np.linalg.norm(d.su * found.by_v[:, None] - d.sv * found.by_u[:, None], axis=1)
+        along = np.linalg.norm(self._along_levels(uv), axis=1)
         return np.asarray(along / area)
 
     def run_outs(self, cut: Cut, along: Array, step: Array) -> Array:
@@ -189,6 +229,5 @@ class LevelChart(FreeChart):
 
     def _speed(self, uv: Array) -> Array:
         """mm along a pass per unit of the along parameter, (n,)."""
-        d, found = self.face.evaluate(uv), self.field.at(uv)
-        way = d.su * found.by_v[:, None] - d.sv * found.by_u[:, None]
-        return np.asarray(np.linalg.norm(way, axis=1) / np.abs(self._rate(uv)))
+        way = np.linalg.norm(self._along_levels(uv), axis=1)
+        return np.asarray(way / np.abs(self._rate(uv)))

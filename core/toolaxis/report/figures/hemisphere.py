@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,8 +29,10 @@ _MARKS = {"chosen": ("*", VERMILION, 15.0), "sectors [zhu2016]": ("P", "#CC79A7"
 def _directions(pole: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Unit vectors of the pixels of the disc, (size * size, 3), and which pixels lie on it."""
     line = (np.arange(_SIZE) + 0.5) / _SIZE * 2.0 - 1.0
-    flat = np.stack([grid.reshape(-1) for grid in np.meshgrid(line, line)], axis=1)
-    return from_equal_area(flat, pole, right), (flat**2).sum(axis=1) <= 1.0
+    x, y = np.meshgrid(line, line)
+    flat = np.stack([x.reshape(-1), y.reshape(-1)], axis=1)
+    on_disc = (flat**2).sum(axis=1) <= 1.0
+    return from_equal_area(flat, pole, right), on_disc
 
 
 def hemisphere_picture(found: AxisMap, area: float, pole: ArrayLike, marks: Mapping[str, ArrayLike],
@@ -52,50 +55,68 @@ def hemisphere_picture(found: AxisMap, area: float, pole: ArrayLike, marks: Mapp
     centre = unit(pole)
     right = perpendicular(centre)[0]
     rows, on_disc = _directions(centre, right)
-    nearest = cKDTree(found.axis).query(rows)[1]
+    _, nearest = cKDTree(found.axis).query(rows)
     free = found.reason == 0
-    width = np.where(free, area / np.where(free & (found.length > 0), found.length, np.inf), np.nan)
+    is_cut = free & (found.length > 0)
+    width = area / np.where(is_cut, found.length, np.inf)
+    width = np.where(free, width, np.nan)
     made = figure(10.0, 6.2)
     side, ax = made.subplots(1, 2, width_ratios=(0.3, 1.0))
-    grey = np.where(on_disc & ~free[nearest], found.reason[nearest].astype(float), np.nan).reshape(_SIZE, _SIZE)
-    ax.imshow(grey, origin="lower", extent=(-1, 1, -1, 1), cmap=ListedColormap(list(_GREYS)), vmin=-0.5,
-              vmax=len(_GREYS) - 0.5, interpolation="nearest")
+    reason = found.reason[nearest].astype(float)
+    grey = np.where(on_disc & ~free[nearest], reason, np.nan).reshape(_SIZE, _SIZE)
+    greys = ListedColormap(list(_GREYS))
+    ax.imshow(grey, origin="lower", extent=(-1, 1, -1, 1), cmap=greys, vmin=-0.5, vmax=len(_GREYS) - 0.5,
+              interpolation="nearest")
     if free.any():
         colour = np.where(on_disc, width[nearest], np.nan).reshape(_SIZE, _SIZE)
+        range_of_colours = Normalize(float(np.nanpercentile(width, 3)), float(np.nanmax(width)))
         image = ax.imshow(colour, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", interpolation="nearest",
-                          norm=Normalize(float(np.nanpercentile(width, 3)), float(np.nanmax(width))))
-        made.colorbar(image, ax=ax, shrink=0.75, extend="min").set_label("average strip width (screening), mm")
-    place = equal_area(found.axis, centre, right)
-    inside = np.linalg.norm(place, axis=1) <= 1.0
-    ax.plot(*place[inside].T, ".", color="black", markersize=1.0, alpha=0.35)
+                          norm=range_of_colours)
+        bar = made.colorbar(image, ax=ax, shrink=0.75, extend="min")
+        bar.set_label("average strip width (screening), mm")
+    x, y = _on_map(found.axis, centre, right, 1.0)
+    ax.plot(x, y, ".", color="black", markersize=1.0, alpha=0.35)
     _circles(ax)
-    _mark(ax, marks, (centre, right))
-    _legends(side, ax, sorted({int(code) for code in found.reason if code > 0}))
+    _mark(ax, marks, centre, right)
+    reasons = {int(code) for code in found.reason if code > 0}
+    _legends(side, ax, sorted(reasons))
     ax.set_title(f"{name}: axes around the mean normal, {len(found.axis)} looked at", fontsize=10)
     return made
+
+
+def _on_map(axes: ArrayLike, pole: Array, right: Array, radius: float) -> tuple[Array, Array]:
+    """Places on the map of axes that lie inside a radius: x and y."""
+    place = equal_area(axes, pole, right)
+    inside = np.linalg.norm(place, axis=1) <= radius
+    x, y = place[inside].T
+    return x, y
 
 
 def _circles(ax: Axes) -> None:
     for angle in (30, 60, 90):
         radius = np.sqrt(2) * np.sin(np.radians(angle) / 2)
-        ax.add_patch(Circle((0, 0), radius, fill=False, edgecolor="black", linewidth=0.6 if angle < 90 else 1.2,
-                            linestyle="--" if angle < 90 else "-"))
-        ax.text(radius * np.sin(0.35), -radius * np.cos(0.35) + 0.01, f"{angle}°", fontsize=7, ha="center", va="bottom")
+        width, line = (1.2, "-") if angle == 90 else (0.6, "--")
+        ax.add_patch(Circle((0, 0), radius, fill=False, edgecolor="black", linewidth=width, linestyle=line))
+        x = radius * np.sin(0.35)
+        y = -radius * np.cos(0.35) + 0.01
+        ax.text(x, y, f"{angle}°", fontsize=7, ha="center", va="bottom")
     ax.set_xlim(-1.03, 1.03)
     ax.set_ylim(-1.03, 1.03)
     ax.set_aspect("equal")
     ax.set_axis_off()
 
 
-def _mark(ax: Axes, marks: Mapping[str, ArrayLike], frame: tuple[Array, Array]) -> None:
+def _mark(ax: Axes, marks: Mapping[str, ArrayLike], pole: Array, right: Array) -> None:
     for label, axes in marks.items():
         shape, colour, size = _MARKS.get(label, ("^", "white", 7.0))
-        place = equal_area(axes, *frame)
-        shown = place[np.linalg.norm(place, axis=1) <= 1.0 + 1e-9]
-        if len(shown):
-            edge = {} if shape == "+" else {"markeredgecolor": "black", "markeredgewidth": 0.8}
-            ax.plot(*shown.T, shape, color=colour, markersize=size, label=label, zorder=5, linestyle="none",
-                    **({"markeredgewidth": 2.0} if shape == "+" else edge))
+        x, y = _on_map(axes, pole, right, 1.0 + 1e-9)
+        if not len(x):
+            continue
+        # A plus has no inside: it is all edge.
+        edge: dict[str, Any] = {"markeredgewidth": 2.0}
+        if shape != "+":
+            edge = {"markeredgecolor": "black", "markeredgewidth": 0.8}
+        ax.plot(x, y, shape, color=colour, markersize=size, label=label, zorder=5, linestyle="none", **edge)
 
 
 def _legends(side: Axes, ax: Axes, reasons: list[int]) -> None:

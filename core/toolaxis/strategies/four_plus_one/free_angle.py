@@ -55,7 +55,9 @@ class SingularSides(NamedTuple):
         angles : (j,) array
             rad
         """
-        return np.asarray(np.floor((angles[:, None, None] - self.at) / (2 * np.pi)).astype(np.intp))
+        past_gate = angles[:, None, None] - self.at
+        turns = np.floor(past_gate / (2 * np.pi))
+        return np.asarray(turns.astype(np.intp))
 
 
 def widest(widths: Array, angles: Array, gates: SingularSides | None = None) -> Index | None:
@@ -78,37 +80,34 @@ def widest(widths: Array, angles: Array, gates: SingularSides | None = None) -> 
     -----
     **Source**: [zhu2016] Sec. 5.4.2 takes the widest strip at every sample by itself; here the angles belong together.
     """
-    usable = widths > 0
     best = widths.max(axis=0)
     if not (best > 0).all():
         return None
-    least = best.min(axis=0)
+    graph = _AngleGraph.of(widths, angles, gates)
+    chosen = np.empty(best.shape, dtype=np.intp)
+    last_pass = best.shape[1] - 1
+    middle = best.shape[1] // 2
+    chosen[:, middle] = _cheapest(graph.price[:, :, middle], graph, middle)
+    for k in (*range(middle + 1, last_pass + 1), *range(middle - 1, -1, -1)):
+        beside = k - 1 if k > middle else k + 1
+        charge = graph.charge_from(beside, chosen[:, beside], k)
+        chosen[:, k] = _cheapest(graph.price[:, :, k] + charge, graph, k)
+    turns_along = np.abs(np.diff(angles[chosen], axis=0))
+    turns_across = np.abs(np.diff(angles[chosen], axis=1))
+    greatest_turn = max(turns_along.max(initial=0.0), turns_across.max(initial=0.0))
+    used = np.take_along_axis(widths, chosen[None], axis=0)[0]
+    if not (used > 0).all() or greatest_turn > _MOST:
+        return None
+    return chosen
+
+
+def _price_of_narrowness(widths: Array) -> Array:
+    """Prices of angles (j, i, k): the narrower a strip is beside the narrowest of its pass, the dearer."""
+    least = widths.max(axis=0).min(axis=0)
     finite = np.where(np.isfinite(least), least, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        price = np.where(usable, (finite / widths) ** _POWER, np.inf)
-    turn = _Turns.between(angles)
-    if gates is None:
-        sides = np.zeros(widths.shape, dtype=np.intp)
-        shut = np.zeros(best.shape, dtype=bool)
-    else:
-        sides = gates.sides(angles)
-        shut = gates.shut
-    chosen = np.empty(best.shape, dtype=np.intp)
-    middle = best.shape[1] // 2
-    chosen[:, middle] = _cheapest(price[:, :, middle], turn, usable[:, :, middle], sides[:, :, middle],
-                                  shut[:, middle])
-    for k in (*range(middle + 1, best.shape[1]), *range(middle - 1, -1, -1)):
-        last = k - 1 if k > middle else k + 1
-        walls = _walls(usable[:, :, k], usable[:, :, last])
-        beside = chosen[:, last]
-        over = walls != np.take_along_axis(walls, beside[None], axis=0)
-        side_beside = sides[beside, np.arange(len(beside)), last]
-        over |= (sides[:, :, k] != side_beside) & (shut[:, k] | shut[:, last])
-        charge = np.where(over, np.inf, _ACROSS * turn.beside(beside))
-        chosen[:, k] = _cheapest(price[:, :, k] + charge, turn, usable[:, :, k], sides[:, :, k], shut[:, k])
-    greatest_turn = max(np.abs(np.diff(angles[chosen], axis=axis)).max(initial=0.0) for axis in (0, 1))
-    used = np.take_along_axis(widths, chosen[None], axis=0)[0]
-    return chosen if (used > 0).all() and greatest_turn <= _MOST else None
+        price = (finite / widths) ** _POWER
+    return np.where(widths > 0, price, np.inf)
 
 
 def _walls(one: Bools, other: Bools) -> Index:
@@ -125,42 +124,81 @@ class _Turns(NamedTuple):
 
     @classmethod
     def between(cls, angles: Array) -> "_Turns":
-        gap = float(angles[1] - angles[0]) if len(angles) > 1 else _MOST
-        most = min(int(_MOST / gap + 1e-9), len(angles) - 1)
+        number = len(angles)
+        gap = float(angles[1] - angles[0]) if number > 1 else _MOST
+        most = min(int(_MOST / gap + 1e-9), number - 1)
         step = np.arange(-most, most + 1)
-        origin = np.arange(len(angles))[:, None] + step
-        inside = (origin >= 0) & (origin < len(angles))
+        origin = np.arange(number)[:, None] + step
+        inside = (origin >= 0) & (origin < number)
         price = (step * (gap / _TENTH)) ** 2
         return cls(np.where(inside, origin, 0), np.where(inside, price, np.inf))
 
     def beside(self, angles: Index) -> Array:
         """The price of turning to each angle from those of other nodes (i,), (j, i); infinite where it is a jump."""
         middle = self.price.shape[1] // 2
-        step = angles - np.arange(len(self.price))[:, None]
+        rows = np.arange(len(self.price))[:, None]
+        step = angles - rows
         near = np.abs(step) <= middle
-        return np.where(near, self.price[np.arange(len(self.price))[:, None], np.where(near, step, 0) + middle], np.inf)
+        column = np.where(near, step, 0) + middle
+        return np.where(near, self.price[rows, column], np.inf)
 
 
-def _cheapest(price: Array, turns: _Turns, usable: Bools, sides: Index, shut: Bools) -> Index:
-    """Places of the angles (i,) with the least sum of prices (j, i) and charges on turning.
+class _AngleGraph(NamedTuple):
+    """What angles cost at nodes (j, i, k) and which may be turned to from which."""
+
+    price: Array
+    usable: Bools
+    sides: Index
+    shut: Bools
+    turns: _Turns
+
+    @classmethod
+    def of(cls, widths: Array, angles: Array, gates: SingularSides | None) -> "_AngleGraph":
+        sides = np.zeros(widths.shape, dtype=np.intp)
+        shut = np.zeros(widths.shape[1:], dtype=bool)
+        if gates is not None:
+            sides = gates.sides(angles)
+            shut = gates.shut
+        return cls(_price_of_narrowness(widths), widths > 0, sides, shut, _Turns.between(angles))
+
+    def charge_from(self, beside: int, chosen: Index, k: int) -> Array:
+        """What angles of a pass cost beside those chosen for another one, (j, i); infinite across walls and gates."""
+        walls = _walls(self.usable[:, :, k], self.usable[:, :, beside])
+        over_wall = walls != np.take_along_axis(walls, chosen[None], axis=0)
+        side = self.sides[chosen, np.arange(len(chosen)), beside]
+        shut = self.shut[:, k] | self.shut[:, beside]
+        over_gate = (self.sides[:, :, k] != side) & shut
+        charge = _ACROSS * self.turns.beside(chosen)
+        return np.where(over_wall | over_gate, np.inf, charge)
+
+
+def _cheapest(price: Array, graph: _AngleGraph, k: int) -> Index:
+    """Places of the angles (i,) of a pass with the least sum of prices (j, i) and charges on turning.
 
     An angle that both of two nodes forbid is not turned across between them, nor a gate that one of them shuts.
     """
-    count = price.shape[1]
+    origins = graph.turns.origin
+    charge = _ALONG * graph.turns.price
+    usable = graph.usable[:, :, k]
+    sides = graph.sides[:, :, k]
+    shut = graph.shut[:, k]
     walls = _walls(usable[:, :-1], usable[:, 1:])
-    total, origin, rows = price[:, 0].copy(), np.empty((count, len(price)), dtype=np.intp), np.arange(len(price))
-    for i in range(1, count):
+    number = price.shape[1]
+    rows = np.arange(len(price))
+    total = price[:, 0].copy()
+    origin = np.empty((number, len(price)), dtype=np.intp)
+    for i in range(1, number):
         wall = walls[:, i - 1]
-        way = wall[turns.origin] == wall[:, None]
+        way = wall[origins] == wall[:, None]
         if shut[i - 1] or shut[i]:
-            way &= sides[turns.origin, i - 1] == sides[:, i, None]
-        ways = np.where(way, total[turns.origin] + _ALONG * turns.price, np.inf)
+            way &= sides[origins, i - 1] == sides[:, i, None]
+        ways = np.where(way, total[origins] + charge, np.inf)
         best = ways.argmin(axis=1)
-        origin[i] = turns.origin[rows, best]
+        origin[i] = origins[rows, best]
         total = ways[rows, best] + price[:, i]
-    chosen = np.empty(count, dtype=np.intp)
+    chosen = np.empty(number, dtype=np.intp)
     chosen[-1] = int(total.argmin())
-    for i in range(count - 1, 0, -1):
+    for i in range(number - 1, 0, -1):
         chosen[i - 1] = origin[i, chosen[i]]
     return chosen
 
@@ -173,7 +211,8 @@ def narrowest(widths: Array, chosen: Index) -> Array:
     widths : (j, i, k) array
     chosen : (i, k) array of int
     """
-    return np.asarray(np.take_along_axis(widths, chosen[None], axis=0)[0].min(axis=0))
+    used = np.take_along_axis(widths, chosen[None], axis=0)[0]
+    return np.asarray(used.min(axis=0))
 
 
 def bands(widths: Array, angles: Array, chosen: Index, share: float,
@@ -199,15 +238,18 @@ def bands(widths: Array, angles: Array, chosen: Index, share: float,
     good = widths >= share * narrowest(widths, chosen)
     if gates is not None:
         sides = gates.sides(angles)
-        good &= ~gates.shut | (sides == np.take_along_axis(sides, chosen[None], axis=0))
+        chosen_side = np.take_along_axis(sides, chosen[None], axis=0)
+        good &= ~gates.shut | (sides == chosen_side)
     low = chosen.copy()
     high = chosen.copy()
-    count = len(angles)
-    for _ in range(count):
+    last = len(angles) - 1
+    for _ in angles:
         down = np.maximum(low - 1, 0)
-        up = np.minimum(high + 1, count - 1)
-        low = np.where(np.take_along_axis(good, down[None], axis=0)[0], down, low)
-        high = np.where(np.take_along_axis(good, up[None], axis=0)[0], up, high)
+        up = np.minimum(high + 1, last)
+        down_is_good = np.take_along_axis(good, down[None], axis=0)[0]
+        up_is_good = np.take_along_axis(good, up[None], axis=0)[0]
+        low = np.where(down_is_good, down, low)
+        high = np.where(up_is_good, up, high)
     return angles[low], angles[high]
 
 
@@ -231,7 +273,9 @@ def smoothest(low: Array, high: Array, along: Array, step: Array) -> Array:
     if common_low <= common_high:
         return np.full(low.shape, (common_low + common_high) / 2)
     n, m = low.shape
-    ratio = ((step[-1] - step[0]) / (m - 1)) / ((along[-1] - along[0]) / (n - 1))
+    gap_along = (along[-1] - along[0]) / (n - 1)
+    gap_across = (step[-1] - step[0]) / (m - 1)
+    ratio = gap_across / gap_along
     slope_along = _differences(n, 1)
     slope_across = _differences(m, 1) / ratio
     bend_along = _differences(n, 2)
@@ -243,24 +287,30 @@ def smoothest(low: Array, high: Array, along: Array, step: Array) -> Array:
         _SLOPE * np.kron(slope_along, np.eye(m)),
         _SLOPE * np.kron(np.eye(n), slope_across),
     ])
-    return _least_form(rows.T @ rows, low.ravel(), np.maximum(high, low).ravel()).reshape(n, m)
+    bounds_high = np.maximum(high, low)
+    angles = _least_form(rows.T @ rows, low.ravel(), bounds_high.ravel())
+    return angles.reshape(n, m)
 
 
 def _least_form(form: Array, low: Array, high: Array) -> Array:
     """The least of a form x form x, which only constants make zero, between bounds that let no constant through: those
     that hold are exchanged until none is wrong.
     """
-    x = np.full(len(low), (float(low.max()) + float(high.min())) / 2)
-    held = np.where(x < low, -1, np.where(x > high, 1, 0)).astype(np.int8)
+    middle = (float(low.max()) + float(high.min())) / 2
+    x = np.full(len(low), middle)
+    held = _sides_passed(x, low, high)
     for _ in range(_EXCHANGES):
         free = held == 0
         if free.all():
             break
-        x = np.where(held < 0, low, np.where(held > 0, high, x))
-        x[free] = _solve_band(form[np.ix_(free, free)], -form[np.ix_(free, ~free)] @ x[~free])
+        x = np.where(held > 0, high, x)
+        x = np.where(held < 0, low, x)
+        right = -form[np.ix_(free, ~free)] @ x[~free]
+        x[free] = _solve_band(form[np.ix_(free, free)], right)
         slope = form @ x
-        passed = np.where(x < low - _TOUCH, -1, np.where(x > high + _TOUCH, 1, 0))
-        still_held = np.where(held * slope > 0, 0, held)  # released where the form falls towards the inside
+        passed = _sides_passed(x, low - _TOUCH, high + _TOUCH)
+        falls_inwards = held * slope > 0
+        still_held = np.where(falls_inwards, 0, held)
         new = np.where(free, passed, still_held)
         if (new == held).all():
             return np.asarray(np.clip(x, low, high), dtype=float)
@@ -268,14 +318,22 @@ def _least_form(form: Array, low: Array, high: Array) -> Array:
     return _by_descent(form, low, high)
 
 
+def _sides_passed(x: Array, low: Array, high: Array) -> NDArray[np.int8]:
+    """Which bound each number passes: -1 the lower one, 1 the upper one, 0 none."""
+    above = np.where(x > high, 1, 0)
+    return np.where(x < low, -1, above).astype(np.int8)
+
+
 def _solve_band(matrix: Array, right: Array) -> Array:
     """The solution of equations whose matrix has few diagonals: the same on any number of threads, (n,)."""
     from scipy.linalg import solve_banded
 
     row, column = np.nonzero(matrix)
-    wide = int(np.abs(row - column).max(initial=0))
-    spend(_SOLVED * len(matrix) * (2 * wide + 1) ** 2)
-    diagonals = np.zeros((2 * wide + 1, len(matrix)))
+    away = row - column
+    wide = int(np.abs(away).max(initial=0))
+    height = 2 * wide + 1
+    spend(_SOLVED * len(matrix) * height ** 2)
+    diagonals = np.zeros((height, len(matrix)))
     diagonals[wide + row - column, column] = matrix[row, column]
     return np.asarray(solve_banded((wide, wide), diagonals, right))
 
@@ -284,8 +342,12 @@ def _by_descent(form: Array, low: Array, high: Array) -> Array:
     """The same where exchanging goes round in circles."""
     from scipy.optimize import minimize
 
-    found = minimize(lambda x: (x @ form @ x / 2, form @ x), (low + high) / 2, jac=True, method="L-BFGS-B",
-                     bounds=list(zip(low, high, strict=True)), options=_TIGHT)
+    def value_and_slope(x: Array) -> tuple[float, Array]:
+        return float(x @ form @ x / 2), form @ x
+
+    bounds = list(zip(low, high, strict=True))
+    begin = (low + high) / 2
+    found = minimize(value_and_slope, begin, jac=True, method="L-BFGS-B", bounds=bounds, options=_TIGHT)
     return np.asarray(np.clip(found.x, low, high), dtype=float)
 
 

@@ -7,6 +7,7 @@ the skin, is looked at apart from what is above, which only has to stay out of i
 """
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,47 +56,80 @@ def turning_gouges(tool: Tool, tips: ArrayLike, axis: ArrayLike, skin: BoundingT
     **Properties**: 1. False only where no point between the ends gouges deeper; 2. a straight motion without a turn is
     judged as `toolaxis.contact.clearance.gouge.segment_gouges` does.
     """
-    rows, axes = as_rows(tips, 3, "tool tips"), unit(as_rows(axis, 3, "axis"))
+    rows = as_rows(tips, 3, "tool tips")
+    axes = unit(as_rows(axis, 3, "axis"))
     if len(axes) != len(rows):
         raise InvalidInput(f"{len(axes)} axes are given for {len(rows)} tips: one is needed for each")
     if not (np.isfinite(limit) and limit > 0):
         raise InvalidInput(f"gouge limit is {limit} mm: it must be a finite number above zero")
-    cells, split = skin_cells(skin), _split(tool)
+    cells = skin_cells(skin)
+    split = _split(tool)
     deep = least_distance(tool, limit, allowance)
     room = allowance - deep
     answer = np.ones(max(len(rows) - 1, 0), dtype=bool)
     for share in SHARES:
         left = np.flatnonzero(answer)
-        for some in np.array_split(left, max(1, len(left) // 256)):
-            answer[some] = _check_motions(split, (rows, axes), some, cells, (deep, share * room))
+        parts = max(1, len(left) // 256)
+        for some in np.array_split(left, parts):
+            motions = _TurningMotions(rows[some], rows[some + 1], axes[some], axes[some + 1])
+            answer[some] = _check_motions(split, motions, cells, deep, share * room)
     return answer
 
 
-def _split(tool: Tool) -> tuple[Tool, float, float]:
+class _SplitCutter(NamedTuple):
+    """A cutter in two: the tool with its lower end as cutter and the rest as shank, and their reach from the tip."""
+
+    tool: Tool
+    near: float
+    far: float
+
+
+class _TurningMotions(NamedTuple):
+    """Straight motions of the tip, (k, 3) mm each, and the axes at both ends."""
+
+    begin: Array
+    end: Array
+    before: Array
+    after: Array
+
+
+def _split(tool: Tool) -> _SplitCutter:
     """The cutter in two: its lower end, and the rest as if it were a shank; how far their points are from the tip."""
-    radius, top = tool.radius, tool.profile.top
-    low = min(max(0.5 * radius, 2 * tool.corner_radius), top)
-    upper = np.array([[radius, low], [radius, top]]) if top > low else None
-    return (replace(tool, flute_length=low, shank=upper, holder=None, stickout=None), float(np.hypot(radius, low)),
-            float(np.hypot(radius, top)))
+    radius = tool.radius
+    top = tool.profile.top
+    low = max(0.5 * radius, 2 * tool.corner_radius)
+    low = min(low, top)
+    upper = None
+    if top > low:
+        upper = np.array([[radius, low], [radius, top]])
+    parted = replace(tool, flute_length=low, shank=upper, holder=None, stickout=None)
+    near = float(np.hypot(radius, low))
+    far = float(np.hypot(radius, top))
+    return _SplitCutter(parted, near, far)
 
 
-def _check_motions(split: tuple[Tool, float, float], path: tuple[Array, Array], which: NDArray[np.intp],
-                   cells: BoundingTree, ask: tuple[float, float]) -> Flags:
+def _check_motions(split: _SplitCutter, motions: _TurningMotions, cells: BoundingTree, deep: float,
+                   cost: float) -> Flags:
     """Whether some motions were not proven, (k,): least signed distance of the lower end, and what turning may cost."""
-    (tool, near, far), (tips, axes), (deep, cost) = split, path, ask
-    begin, end, before, after = tips[which], tips[which + 1], axes[which], axes[which + 1]
-    parts = np.maximum(np.ceil(0.5001 * angle_between(before, after) * near / cost), 1).astype(np.int64)
+    begin, end, before, after = motions
+    # A little more than half of the turn: pieces are judged by the axis at their middle.
+    turned = 0.5001 * angle_between(before, after)
+    parts = np.ceil(turned * split.near / cost)
+    parts = np.maximum(parts, 1).astype(np.int64)
     owner, number = number_parts(parts)
     place = (number + 0.5) / parts[owner]
     half = 0.5 / parts[owner]
-    way, turn = (end - begin)[owner], (after - before)[owner]
+    way = (end - begin)[owner]
+    turn = (after - before)[owner]
+    tip = begin[owner] + place[:, None] * way
     middle = before[owner] + place[:, None] * turn
-    moves = np.stack([begin[owner] + place[:, None] * way, half[:, None] * way,
-                      middle / np.linalg.norm(middle, axis=1, keepdims=True)], axis=1)
-    size = 0.5001 * angle_between(before, after) / parts
+    axis = middle / np.linalg.norm(middle, axis=1, keepdims=True)
+    moves = np.stack([tip, half[:, None] * way, axis], axis=1)
+    size = turned / parts
     slack = float(size.max(initial=0.0))
-    required = np.tile([deep + near * slack, max(far * slack, 1e-9), -np.inf], (len(cells.faces), 1))
-    bad = np.zeros(len(which), dtype=bool)
-    bad[owner[keeps_limits(cells, tool, moves, required).blocked >= 0]] = True
+    limits = [deep + split.near * slack, max(split.far * slack, 1e-9), -np.inf]
+    required = np.tile(limits, (len(cells.faces), 1))
+    found = keeps_limits(cells, split.tool, moves, required)
+    bad = np.zeros(len(before), dtype=bool)
+    bad[owner[found.blocked >= 0]] = True
     return bad

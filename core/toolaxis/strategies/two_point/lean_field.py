@@ -45,9 +45,11 @@ class LeanField:
         along : (n,) array
         step : float
         """
-        j = int(np.clip(np.searchsorted(self.step, step) - 1, 0, len(self.step) - 2))
+        j = int(np.searchsorted(self.step, step)) - 1
+        j = int(np.clip(j, 0, len(self.step) - 2))
         before, behind = self.step[j:j + 2]
-        share = float(np.clip((step - before) / (behind - before), 0.0, 1.0))
+        share = (step - before) / (behind - before)
+        share = float(np.clip(share, 0.0, 1.0))
 
         def interpolate(table: Array) -> Array:
             row = (1 - share) * table[:, j] + share * table[:, j + 1]
@@ -85,24 +87,34 @@ def field_of(work: TwoPointInputs, sense: int) -> LeanField:
     before.
     """
     a0, a1, s0, s1 = work.span
-    along = np.linspace(a0, a1, GRID[0])
-    step = np.linspace(s0, s1, GRID[1] + 2)[1:-1]
+    places_along, lines = GRID
+    along = np.linspace(a0, a1, places_along)
+    step = np.linspace(s0, s1, lines + 2)[1:-1]
     lifts = BRIDGE * work.scallop * np.array(LIFTS)
     uv = np.stack([work.uv(along, place) for place in step], axis=1)
     wide = _strip_widths(work, sense, uv, lifts)
     usual = work.tool.radius
-    cost = (usual / np.maximum(wide.max(axis=3), 1e-3 * usual)) ** 2
+    widest = np.maximum(wide.max(axis=3), 1e-3 * usual)
+    cost = (usual / widest) ** 2
+    chosen = _cheapest_field(cost)
+    in_direction = np.take_along_axis(wide, chosen[..., None, None], axis=2)[..., 0, :]
+    best_lift = in_direction.argmax(axis=2)
+    return LeanField(along, step, DIRECTIONS[chosen], lifts[best_lift])
+
+
+def _cheapest_field(cost: Array) -> NDArray[np.intp]:
+    """The directions (k, m) that cost (k, m, d) and turns make cheapest, line by line from the middle outwards."""
+    places_along, lines, _ = cost.shape
     turn = TURNING * np.subtract.outer(DIRECTIONS, DIRECTIONS) ** 2
-    chosen = np.empty((len(along), len(step)), dtype=int)
-    middle = len(step) // 2
-    for j in sorted(range(len(step)), key=lambda k: abs(k - middle)):  # from the middle outwards
+    chosen = np.empty((places_along, lines), dtype=int)
+    middle = lines // 2
+    for j in sorted(range(lines), key=lambda k: abs(k - middle)):
         here = cost[:, j]
         if j != middle:
-            line_before = chosen[:, j + 1 if j < middle else j - 1]
-            here = here + turn[:, line_before].T
+            before = j + 1 if j < middle else j - 1
+            here = here + turn[:, chosen[:, before]].T
         chosen[:, j] = _cheapest(here, turn)
-    in_direction = np.take_along_axis(wide, chosen[..., None, None], axis=2)[..., 0, :]
-    return LeanField(along, step, DIRECTIONS[chosen], lifts[in_direction.argmax(axis=2)])
+    return chosen
 
 
 def _strip_widths(work: TwoPointInputs, sense: int, uv: Array, lifts: Array) -> Array:
@@ -113,19 +125,22 @@ def _strip_widths(work: TwoPointInputs, sense: int, uv: Array, lifts: Array) -> 
     places = uv.shape[:2]
     rows = uv.reshape(-1, 2)
     wide = np.zeros((*places, len(DIRECTIONS), len(lifts)))
-    straight = _settled_width(work, sense, rows, (lifts[0], 0.0)).reshape(places)
+    straight = _settled_width(work, sense, rows, lifts[0], 0.0).reshape(places)
     wide[:, :, STRAIGHT, 0] = straight
-    poor = straight < ENOUGH * _formula_width(work, sense, rows).reshape(places)
-    i, j, direction, lift = np.nonzero(np.broadcast_to(poor[..., None, None], wide.shape))
-    wide[i, j, direction, lift] = _settled_width(work, sense, uv[i, j], (lifts[lift], DIRECTIONS[direction]))
+    usual = _formula_width(work, sense, rows).reshape(places)
+    poor = straight < ENOUGH * usual
+    tried = np.broadcast_to(poor[..., None, None], wide.shape)
+    i, j, direction, lift = np.nonzero(tried)
+    wide[i, j, direction, lift] = _settled_width(work, sense, uv[i, j], lifts[lift], DIRECTIONS[direction])
     return wide
 
 
-def _settled_width(work: TwoPointInputs, sense: int, uv: Array, how: tuple[ArrayLike, ArrayLike]) -> Array:
+def _settled_width(work: TwoPointInputs, sense: int, uv: Array, lift: ArrayLike, direction: ArrayLike) -> Array:
     """Widths of the strips of rings that settle from heights in directions, (n,) mm; 0 where they stay too high."""
     setting = work.setting(uv, sense)
-    stand, ring = settle(setting, *how)
-    return np.where(stand.lift <= work.scallop, _width(work, setting, ring), 0.0)
+    stand, ring = settle(setting, lift, direction)
+    width = _width(work, setting, ring)
+    return np.where(stand.lift <= work.scallop, width, 0.0)
 
 
 def _formula_width(work: TwoPointInputs, sense: int, uv: Array) -> Array:
@@ -135,10 +150,12 @@ def _formula_width(work: TwoPointInputs, sense: int, uv: Array) -> Array:
     radius = work.tool.flat_radius
     hollow = across > 1e-6
     fits = hollow & (radius * across < np.sin(STEEPEST))
-    rho = np.where(fits, 1 / np.where(fits, across, 1.0), 1e6)
+    rho = 1 / np.where(fits, across, 1.0)
+    rho = np.where(fits, rho, 1e6)
     lead = two_point_lead(radius, rho, work.scallop)
     width = circle_strip_width(radius, rho, work.scallop, lead, work.scallop)
-    return np.where(fits, width, np.where(hollow, np.inf, 0.0))
+    otherwise = np.where(hollow, np.inf, 0.0)
+    return np.where(fits, width, otherwise)
 
 
 def _cheapest(cost: Array, turn: Array) -> NDArray[np.intp]:
@@ -158,9 +175,13 @@ def _cheapest(cost: Array, turn: Array) -> NDArray[np.intp]:
 def _width(work: TwoPointInputs, setting: ContactSet, ring: CornerCircles) -> Array:
     """Width of what standing rings leave within the tolerance across the passes, (n,) mm."""
     d = work.face.evaluate(setting.uv)
-    pace = np.linalg.norm(d.sv if work.feed == "u" else d.su, axis=1)
-    lines = (ring.uv[:, FRONT, 1 - work.column], ring.height[:, FRONT])
-    (left, _), (right, _) = (strip_end(work.scallop, lines, columns) for columns in SIDES)
+    across = d.sv if work.feed == "u" else d.su
+    pace = np.linalg.norm(across, axis=1)
+    step = ring.uv[:, FRONT, 1 - work.column]
+    lines = (step, ring.height[:, FRONT])
+    left_side, right_side = SIDES
+    left, _ = strip_end(work.scallop, lines, left_side)
+    right, _ = strip_end(work.scallop, lines, right_side)
     return np.asarray(np.abs(left - right) * pace)
 
 
@@ -176,15 +197,20 @@ def strip_end(limit: float, lines: tuple[Array, Array], columns: range) -> tuple
     columns : range
         One of `SIDES`: from the contact outwards.
     """
-    across, height = (rows[:, list(columns)] for rows in lines)
+    of_side = list(columns)
+    across, height = (rows[:, of_side] for rows in lines)
     bad = ~(height <= limit * (1 + 1e-6))
     last = across.shape[1] - 1
-    k = np.where(bad.any(axis=1), np.argmax(bad, axis=1), last)
+    first_bad = np.argmax(bad, axis=1)
+    k = np.where(bad.any(axis=1), first_bad, last)
     i = np.arange(len(k))
     before = np.maximum(k - 1, 0)
     last_good = across[i, before]
     below = limit - height[i, before]
     rise = height[i, k] - height[i, before]
-    share = np.where(bad[i, k] & (rise > 0), below / np.where(rise > 0, rise, 1.0), 1.0)
-    end = last_good + np.clip(share, 0.0, 1.0) * (across[i, k] - last_good)
+    rises = rise > 0
+    share = below / np.where(rises, rise, 1.0)
+    share = np.where(bad[i, k] & rises, share, 1.0)
+    share = np.clip(share, 0.0, 1.0)
+    end = last_good + share * (across[i, k] - last_good)
     return np.where(np.isfinite(end), end, last_good), k
