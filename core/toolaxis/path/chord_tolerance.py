@@ -47,11 +47,15 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     along : (n,) array
         Sorted by piece, then increasing; both ends included.
     """
-    share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
-    least = _LEAST_GAP * (chart.bounds[1] - chart.bounds[0])
+    a0, a1, _, _ = chart.bounds
+    least = _LEAST_GAP * (a1 - a0)
     surface = chart.face.surface.stand_in or chart.face.surface
-    stretch = (chart.bounds[1] - chart.bounds[0]) / (1 + max(map(len, surface.breaks)))
-    ends = pieces[:, :1] + (pieces[:, 1:2] - pieces[:, :1]) * share
+    most_breaks = max(map(len, surface.breaks))
+    stretch = (a1 - a0) / (1 + most_breaks)
+    share = np.linspace(0.0, 1.0, _FIRST_GAPS + 1)
+    begin = pieces[:, :1]
+    end = pieces[:, 1:2]
+    ends = begin + (end - begin) * share
     owner = np.repeat(np.arange(len(pieces)), _FIRST_GAPS)
     low = ends[:, :-1].ravel()
     high = ends[:, 1:].ravel()
@@ -60,14 +64,20 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
     for _ in range(_ROUNDS):
         if not len(owner):
             break
-        probes = _probes(float((high - low).max()) / stretch)
-        away = in_blocks(partial(_deviations, chart, cut, probes), low, high, pieces[owner, 2],
-                         size=max(_GAPS * _LEAST_PROBES // len(probes), 1))
-        parts = np.minimum(np.ceil(1.05 * np.sqrt(away / chord)), np.ceil((high - low) / least))
+        longest = float((high - low).max())
+        probes = _probes(longest / stretch)
+        deviations = partial(_deviations, chart, cut, probes)
+        at_once = max(_GAPS * _LEAST_PROBES // len(probes), 1)
+        away = in_blocks(deviations, low, high, pieces[owner, 2], size=at_once)
+        wanted = np.ceil(1.05 * np.sqrt(away / chord))
+        possible = np.ceil((high - low) / least)
+        parts = np.minimum(wanted, possible)
         fine = parts <= 1.05
         done_owner.append(owner[fine])
         done_low.append(low[fine])
-        owner, low, high = _divide(owner[~fine], low[~fine], high[~fine], np.clip(parts[~fine], 2, 64).astype(int))
+        coarse = ~fine
+        new_parts = np.clip(parts[coarse], 2, 64).astype(int)
+        owner, low, high = _divide(owner[coarse], low[coarse], high[coarse], new_parts)
     done_owner.append(owner)
     done_low.append(low)
     piece = np.concatenate(done_owner)
@@ -78,8 +88,9 @@ def follow(chart: Chart, cut: Cut, pieces: Array, chord: float) -> tuple[Index, 
 
 def _probes(stretches: float) -> Array:
     """Inner places of gaps that are as long as so many stretches between knots, as shares."""
-    count = int(np.clip(np.ceil(stretches), _LEAST_PROBES, _MOST_PROBES))
-    return np.arange(1, count + 1) / (count + 1)
+    number = np.clip(np.ceil(stretches), _LEAST_PROBES, _MOST_PROBES)
+    number = int(number)
+    return np.arange(1, number + 1) / (number + 1)
 
 
 def rises(chart: Chart, cut: Cut, steps: Array, points: tuple[Index, Array], tip: Array) -> Array:
@@ -106,35 +117,43 @@ def rises(chart: Chart, cut: Cut, steps: Array, points: tuple[Index, Array], tip
     first = np.flatnonzero(piece[1:] == piece[:-1])
     if not len(first):
         return deeper
-    above = in_blocks(lambda *gaps: _heights_over(chart, cut, *gaps), along[first], along[first + 1], steps[first],
-                      tip[first], tip[first + 1], size=_GAPS)
-    for end in (first, first + 1):
-        np.maximum.at(deeper, end, above)
+    after = first + 1
+    heights = partial(_heights_over, chart, cut)
+    above = in_blocks(heights, along[first], along[after], steps[first], tip[first], tip[after], size=_GAPS)
+    np.maximum.at(deeper, first, above)
+    np.maximum.at(deeper, after, above)
     return deeper
 
 
 def _heights_over(chart: Chart, cut: Cut, low: Array, high: Array, step: Array, begin: Array, end: Array) -> Array:
     """How far straight motions of the tip from begin to end, at low and high, stay above the pass at most, (m,) mm."""
-    along = (low[:, None] + (high - low)[:, None] * _QUARTERS).ravel()
-    contact, _, normal = tip_points(chart, cut, along, np.repeat(step, len(_QUARTERS)))
-    axis_before, axis_after = (np.broadcast_to(cut.axes(chart.face, chart.uv(place, step)), begin.shape)
-                               for place in (low, high))
+    along = low[:, None] + (high - low)[:, None] * _QUARTERS
+    contact, _, normal = tip_points(chart, cut, along.ravel(), np.repeat(step, len(_QUARTERS)))
+    axis_before = cut.axes(chart.face, chart.uv(low, step))
+    axis_after = cut.axes(chart.face, chart.uv(high, step))
+    axis_before = np.broadcast_to(axis_before, begin.shape)
+    axis_after = np.broadcast_to(axis_after, begin.shape)
     axes = unit(_between(axis_before, axis_after))
     touching = tips(contact, normal, axes, cut.tool, cut.allowance)
-    above = ((_between(begin, end) - touching) * normal).sum(axis=1)
+    off = _between(begin, end) - touching
+    above = (off * normal).sum(axis=1)
     return np.asarray(above.reshape(len(low), -1).max(axis=1))
 
 
 def _between(begin: Array, end: Array) -> Array:
     """Places of straight motions from begin (m, 3) to end, one motion after the other, (m k, 3)."""
-    return np.asarray(begin[:, None] + (end - begin)[:, None] * _QUARTERS[:, None]).reshape(-1, 3)
+    way = end - begin
+    places = begin[:, None] + way[:, None] * _QUARTERS[:, None]
+    return np.asarray(places).reshape(-1, 3)
 
 
 def _divide(owner: Index, low: Array, high: Array, parts: NDArray[np.int64]) -> tuple[Index, Array, Array]:
     source, number = number_parts(parts)
     gap = ((high - low) / parts)[source]
     begin = low[source]
-    return owner[source], begin + number * gap, begin + (number + 1) * gap
+    lower = begin + number * gap
+    upper = begin + (number + 1) * gap
+    return owner[source], lower, upper
 
 
 def _deviations(chart: Chart, cut: Cut, probes: Array, low: Array, high: Array, step: Array) -> Array:
@@ -143,14 +162,24 @@ def _deviations(chart: Chart, cut: Cut, probes: Array, low: Array, high: Array, 
     along = (low[:, None] + (high - low)[:, None] * places).ravel()
     steps = np.repeat(step, len(places))
     contact, tip, _ = tip_points(chart, cut, along, steps)
+    curves = [contact, tip]
     axes = cut.axes(chart.face, chart.uv(along, steps))
+    if axes.ndim > 1:
+        curves.append(tip + 2 * cut.tool.radius * axes)
     worst = np.zeros(len(low))
-    for curve in (contact, tip) if axes.ndim == 1 else (contact, tip, tip + 2 * cut.tool.radius * axes):
+    for curve in curves:
         nodes = curve.reshape(len(low), len(places), 3)
-        start, line = nodes[:, :1], nodes[:, -1:] - nodes[:, :1]
-        square = np.maximum((line**2).sum(axis=2), np.finfo(float).tiny)
-        inner = nodes[:, 1:-1] - start
-        share = np.clip((inner * line).sum(axis=2) / square, 0.0, 1.0)
-        away = np.linalg.norm(inner - share[..., None] * line, axis=2)
+        away = _distances_from_chords(nodes)
         worst = np.maximum(worst, away.max(axis=1))
     return worst
+
+
+def _distances_from_chords(nodes: Array) -> Array:
+    """Distances of inner nodes (n, k, 3) from the straight line between the first and the last one, (n, k - 2)."""
+    start = nodes[:, :1]
+    line = nodes[:, -1:] - start
+    square = np.maximum((line**2).sum(axis=2), np.finfo(float).tiny)
+    inner = nodes[:, 1:-1] - start
+    share = (inner * line).sum(axis=2) / square
+    share = np.clip(share, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(inner - share[..., None] * line, axis=2))

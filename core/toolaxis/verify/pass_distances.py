@@ -6,7 +6,7 @@ for the pass on its other side.
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,25 +104,30 @@ def greatest_distance(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profil
     touched, feeds = _contact_lines(cl, profile, [one.face for one in faces], heights, _DENSE * most)
     if not len(touched):
         return None
-    passes = cKDTree(touched)
     asked = np.concatenate([one.point for one in faces])
     if not len(asked):
         return None
-    on_face, spacing = cKDTree(asked), max(one.spacing for one in faces)
+    spacing = max(one.spacing for one in faces)
+    far = _FAR * (profile.flat_radius + profile.corner_radius)
+    search = _PassSearch(cKDTree(touched), touched, cKDTree(asked), spacing, _TRIAL * most, far)
     stands = _Standing(faces, cl, profile, heights[0], may_stand)
     best: PassDistance | None = None
     for one in faces:
-        near, number = passes.query(one.point)
+        near, number = search.passes.query(one.point)
         rows = np.flatnonzero(near > _NEAR * most / 2)
-        along = np.abs(dot(one.point[rows] - touched[number[rows]], feeds[number[rows]]))
+        away = one.point[rows] - touched[number[rows]]
+        along = np.abs(dot(away, feeds[number[rows]]))
         rows = rows[along <= _ACROSS * near[rows]]  # elsewhere it lies before or behind the end of a pass
-        other = _other_side(one.point[rows], touched[number[rows]], (passes, touched), (on_face, spacing),
-                            (_TRIAL * most, _FAR * (profile.flat_radius + profile.corner_radius)))
-        way, feed = other - touched[number[rows]], feeds[number[rows]]
-        gap = np.linalg.norm(way - dot(way, feed)[:, None] * feed, axis=1)
-        i = _find_worst(stands, one.point[rows], other, gap)
+        point = one.point[rows]
+        this_side = touched[number[rows]]
+        feed = feeds[number[rows]]
+        other = search.other_side(point, this_side)
+        way = other - this_side
+        across = way - dot(way, feed)[:, None] * feed
+        gap = np.linalg.norm(across, axis=1)
+        i = _find_worst(stands, point, other, gap)
         if i >= 0 and (best is None or gap[i] > best.distance):
-            x, y, z = (float(value) for value in one.point[rows[i]])
+            x, y, z = (float(value) for value in point[i])
             best = PassDistance(float(gap[i]), one.face.label, (x, y, z))
     return best
 
@@ -130,23 +135,30 @@ def greatest_distance(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profil
 def _find_worst(stands: "_Standing", point: Array, other: Array, gap: Array) -> int:
     """Row of the largest gap on all of whose way to the other pass something is asked for and the tool may stand; below
     zero for none."""
-    order = np.argsort(-np.where(np.isfinite(gap), gap, -np.inf), kind="stable")
-    order = order[np.isfinite(gap[order])]
+    is_known = np.isfinite(gap)
+    order = np.argsort(-np.where(is_known, gap, -np.inf), kind="stable")
+    order = order[is_known[order]]
+    share = (np.arange(_BETWEEN) + 0.5)[:, None, None] / _BETWEEN
     tried = 0
     while len(order):
-        some, order = order[:_TOGETHER], order[_TOGETHER:]
-        share = (np.arange(_BETWEEN) + 0.5)[:, None, None] / _BETWEEN
-        ways = (point[some] + share * (other[some] - point[some])).transpose(1, 0, 2)
-        asked, tips = stands.find_feet(ways.reshape(-1, 3))
+        some = order[:_TOGETHER]
+        order = order[_TOGETHER:]
+        ways = point[some] + share * (other[some] - point[some])
+        asked, tips = stands.find_feet(ways.transpose(1, 0, 2).reshape(-1, 3))
         whole = asked.reshape(len(some), _BETWEEN).all(axis=1)
-        rows, tips = some[whole], tips.reshape(len(some), _BETWEEN, 3)[whole]
+        rows = some[whole]
+        tips = tips.reshape(len(some), _BETWEEN, 3)[whole]
         while len(rows):
+            row = rows[0]
             tried += 1
             if tried > _TRIED or stands.stands_at(tips[0]):
-                return int(rows[0])
-            far = np.linalg.norm(point[rows] - point[rows[0]], axis=1) > gap[rows[0]]
-            order = order[np.linalg.norm(point[order] - point[rows[0]], axis=1) > gap[rows[0]]]
-            rows, tips = rows[far], tips[far]
+                return int(row)
+            # Near a gap where the tool may not stand it is not asked again.
+            far = np.linalg.norm(point[rows] - point[row], axis=1) > gap[row]
+            still_far = np.linalg.norm(point[order] - point[row], axis=1) > gap[row]
+            order = order[still_far]
+            rows = rows[far]
+            tips = tips[far]
     return -1
 
 
@@ -166,19 +178,24 @@ class _Standing:
 
     def __init__(self, faces: Sequence[MeasuredFace], cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile,
                  allowance: float, may_stand: Callable[[Array, Array], bool] | None) -> None:
-        self._faces, self._cl, self._profile, self._allowance = faces, cl, profile, allowance
+        self._faces = faces
+        self._cl = cl
+        self._profile = profile
+        self._allowance = allowance
         self._may_stand = may_stand
 
     def find_feet(self, places: Array) -> tuple[Bools, Array]:
         """Whether places over or under faces have something asked for at their foot, (n,), and the tips of a tool that
         touches the face there, (n, 3) mm."""
-        asked, tips = np.zeros(len(places), dtype=bool), places.copy()
+        asked = np.zeros(len(places), dtype=bool)
+        tips = places.copy()
         axes = self._axes_at(places)
         for one in self._faces:
             foot = nearest(one.face, places)
             normal = one.face.normal(foot.uv)
             way = places - foot.point
-            aside = np.linalg.norm(way - dot(way, normal)[:, None] * normal, axis=1)
+            across = way - dot(way, normal)[:, None] * normal
+            aside = np.linalg.norm(across, axis=1)
             here = (aside <= _ASIDE) & ~one.left(foot.uv, foot.point)
             asked |= here
             tips[here] = _tips_at(one.face, self._profile, foot.uv[here], axes[here], self._allowance)
@@ -194,29 +211,44 @@ class _Standing:
 
         tips, axes, kind = self._cl
         cut = np.flatnonzero(kind == Motion.CUT)
-        return np.asarray(axes[cut[cKDTree(tips[cut]).query(places)[1]]])
+        _, number = cKDTree(tips[cut]).query(places)
+        return np.asarray(axes[cut[number]])
 
 
-def _other_side(point: Array, near: Array, passes: tuple[object, Array], face: tuple[object, float],
-                lengths: tuple[float, float]) -> Array:
-    """A contact of the pass on the side of each point away from its nearest one, (n, 3) mm; nan where the face ends
-    before there is one."""
-    (tree, touched), (on_face, spacing), (step, far) = passes, face, lengths
-    found = np.full((len(point), 3), np.nan)
-    size = np.linalg.norm(point - near, axis=1)
-    away = (point - near) / np.maximum(size, 1e-12)[:, None]
-    left, length = np.arange(len(point)), step
-    while len(left) and length <= far:
-        tried = point[left] + length * away[left]
-        off, number = tree.query(tried)  # type: ignore[attr-defined]
-        way = touched[number] - point[left]
-        along = dot(way, away[left])
-        there = (off <= max(_OFF * length, step)) & (along > 0.5 * np.linalg.norm(way, axis=1))
-        found[left[there]] = touched[number[there]]
-        gone = on_face.query(tried)[0] > 1.5 * spacing + _OFF * length  # type: ignore[attr-defined]
-        left = left[~there & ~gone]
-        length += step
-    return found
+class _PassSearch(NamedTuple):
+    """Where passes are looked for: trees of contacts along passes and of places on faces, (k, 3) mm, with the distance
+    of neighbouring places; and in what steps it is looked, and how far, mm."""
+
+    passes: Any
+    touched: Array
+    on_face: Any
+    spacing: float
+    step: float
+    far: float
+
+    def other_side(self, point: Array, near: Array) -> Array:
+        """A contact of the pass on the side of each point away from its nearest one, (n, 3) mm; nan where the face
+        ends before there is one."""
+        found = np.full((len(point), 3), np.nan)
+        way = point - near
+        size = np.linalg.norm(way, axis=1)
+        away = way / np.maximum(size, 1e-12)[:, None]
+        left = np.arange(len(point))
+        length = self.step
+        while len(left) and length <= self.far:
+            tried = point[left] + length * away[left]
+            off, number = self.passes.query(tried)
+            contact = self.touched[number]
+            way = contact - point[left]
+            along = dot(way, away[left])
+            is_ahead = along > 0.5 * np.linalg.norm(way, axis=1)
+            there = (off <= max(_OFF * length, self.step)) & is_ahead
+            found[left[there]] = contact[there]
+            off_face, _ = self.on_face.query(tried)
+            gone = off_face > 1.5 * self.spacing + _OFF * length
+            left = left[~there & ~gone]
+            length += self.step
+        return found
 
 
 def _contact_lines(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, faces: Sequence[Face],
@@ -224,25 +256,29 @@ def _contact_lines(cl: tuple[Array, Array, NDArray[np.int8]], profile: Profile, 
     """Places along the lines that the cutter touches on faces and where these go on beyond their borders, (k, 3) mm,
     and unit directions of these lines there, (k, 3)."""
     tips, axes, kind = cl
+    allowance, farthest_off = heights
     used = np.zeros(len(tips), dtype=bool)
     end = np.flatnonzero(kind[1:] == Motion.CUT) + 1
-    used[end], used[end - 1] = True, True
+    used[end] = True
+    used[end - 1] = True
     rows = np.flatnonzero(used)
-    point, least = np.full((len(tips), 3), np.nan), np.full(len(tips), np.inf)
+    point = np.full((len(tips), 3), np.nan)
+    least = np.full(len(tips), np.inf)
     for face in faces:
-        uv, off = find_contacts(face, profile, (tips[rows], axes[rows]), heights[0])
-        off = np.where(off <= heights[1], off, np.inf)
-        off = np.where(face.contains(uv), off, off + heights[1])  # on the face itself before what continues another
+        uv, off = find_contacts(face, profile, (tips[rows], axes[rows]), allowance)
+        off = np.where(off <= farthest_off, off, np.inf)
+        off = np.where(face.contains(uv), off, off + farthest_off)  # on the face itself before what continues another
         better = off < least[rows]
-        point[rows[better]], least[rows[better]] = face.evaluate(uv[better]).point, off[better]
+        point[rows[better]] = face.evaluate(uv[better]).point
+        least[rows[better]] = off[better]
     good = np.isfinite(least)
     end = end[good[end] & good[end - 1]]
-    way = np.linalg.norm(point[end] - point[end - 1], axis=1)
+    before = point[end - 1]
+    steps = point[end] - before
+    way = np.linalg.norm(steps, axis=1)
     parts = np.maximum(np.ceil(way / dense), 1).astype(np.int64)
     owner, number = number_parts(parts)
     share = ((number + 1) / parts[owner])[:, None]
-    before = point[end - 1]
-    steps = point[end] - before
     between = before[owner] + share * steps[owner]
     ways = steps / np.maximum(way, 1e-12)[:, None]
     return np.concatenate([before, between]), np.concatenate([ways, ways[owner]])
@@ -269,29 +305,33 @@ def find_contacts(face: Face, profile: Profile, standing: tuple[Array, Array], a
     tree = cKDTree(_tips_at(face, profile, grid, mean, allowance))
     near, number = tree.query(tips)
     uv = grid[number].astype(float)
-    reach = 2 * (profile.flat_radius + profile.corner_radius) + face.diagonal / _SAMPLES
+    cutter = profile.flat_radius + profile.corner_radius
+    reach = 2 * cutter + face.diagonal / _SAMPLES
     off = np.full(len(tips), np.inf)
     left = np.flatnonzero(near <= reach)
-    uv[left], off[left] = _descend(face, profile, (tips[left], axes[left]), (uv[left], allowance))
+    uv[left], off[left] = _descend(face, profile, tips[left], axes[left], uv[left], allowance)
     for shift in (1, -1) * _AGAIN:  # axes that move stand elsewhere otherwise than the mean one: from the next contact
-        poor = np.flatnonzero((off > _SOLVED) & (np.roll(off, shift) <= _SOLVED))
+        is_poor = off > _SOLVED
+        poor = np.flatnonzero(is_poor & (np.roll(off, shift) <= _SOLVED))
         if not len(poor):
             continue
         start = np.roll(uv, shift, axis=0)[poor]
-        again, size = _descend(face, profile, (tips[poor], axes[poor]), (start, allowance))
+        again, size = _descend(face, profile, tips[poor], axes[poor], start, allowance)
         better = size < off[poor]
-        uv[poor[better]], off[poor[better]] = again[better], size[better]
+        improved = poor[better]
+        uv[improved] = again[better]
+        off[improved] = size[better]
     return uv, off
 
 
-def _descend(face: Face, profile: Profile, standing: tuple[Array, Array], start: tuple[Array, float]) -> tuple[Array,
-                                                                                                              Array]:
+def _descend(face: Face, profile: Profile, tips: Array, axes: Array, start: Array,
+             allowance: float) -> tuple[Array, Array]:
     """Contacts from parameters to start with, and how far off their tips are, mm: steps of Gauss and Newton, damped
     where they do not bring a tip nearer."""
-    (tips, axes), (uv, allowance) = standing, start
     u0, u1, v0, v1 = face.bounds
     span = np.array([u1 - u0, v1 - v0])
-    uv, damping = uv.copy(), np.full(len(uv), 1e-8)
+    uv = start.copy()
+    damping = np.full(len(uv), 1e-8)
     gap = _tips_at(face, profile, uv, axes, allowance) - tips
     off = np.linalg.norm(gap, axis=1)
     left = np.arange(len(uv))
@@ -299,27 +339,45 @@ def _descend(face: Face, profile: Profile, standing: tuple[Array, Array], start:
         left = left[(off[left] > 1e-8) & (damping[left] < 1e8)]
         if not len(left):
             break
-        slopes = [(_tips_at(face, profile, uv[left] + _STEP * span * side, axes[left], allowance) - tips[left]
-                   - gap[left]) / _STEP for side in np.eye(2)]
-        a, b, c = (dot(slopes[i], slopes[k]) for i, k in ((0, 0), (0, 1), (1, 1)))
-        p, q = dot(slopes[0], gap[left]), dot(slopes[1], gap[left])
-        a, c = a * (1 + damping[left]) + 1e-30, c * (1 + damping[left]) + 1e-30
-        area = np.maximum(a * c - b * b, 1e-14 * a * c)
-        step = np.stack([b * q - c * p, b * p - a * q], axis=1) / area[:, None]
-        trial = uv[left] + span * np.clip(step, -_LONGEST, _LONGEST)
+        here = uv[left]
+        slopes = []
+        for side in np.eye(2):
+            beside = _tips_at(face, profile, here + _STEP * span * side, axes[left], allowance)
+            slopes.append((beside - tips[left] - gap[left]) / _STEP)
+        step = _damped_step(slopes[0], slopes[1], gap[left], damping[left])
+        trial = here + span * np.clip(step, -_LONGEST, _LONGEST)
         found = _tips_at(face, profile, trial, axes[left], allowance) - tips[left]
         size = np.linalg.norm(found, axis=1)
         better = size < off[left]
         taken = left[better]
-        uv[taken], gap[taken], off[taken] = trial[better], found[better], size[better]
-        damping[left] = np.where(better, 0.1 * damping[left], np.maximum(10 * damping[left], 1e-5))
+        uv[taken] = trial[better]
+        gap[taken] = found[better]
+        off[taken] = size[better]
+        more = np.maximum(10 * damping[left], 1e-5)
+        damping[left] = np.where(better, 0.1 * damping[left], more)
     return uv, off
+
+
+def _damped_step(slope_u: Array, slope_v: Array, gap: Array, damping: Array) -> Array:
+    """The step of Levenberg and Marquardt that closes gaps (n, 3), (n, 2)."""
+    a = dot(slope_u, slope_u)
+    b = dot(slope_u, slope_v)
+    c = dot(slope_v, slope_v)
+    p = dot(slope_u, gap)
+    q = dot(slope_v, gap)
+    a = a * (1 + damping) + 1e-30
+    c = c * (1 + damping) + 1e-30
+    area = np.maximum(a * c - b * b, 1e-14 * a * c)
+    step = np.stack([b * q - c * p, b * p - a * q], axis=1)
+    return np.asarray(step / area[:, None])
 
 
 def _tips_at(face: Face, profile: Profile, uv: Array, axes: Array, allowance: float) -> Array:
     """Tips of a cutter that touches a face at parameters, (n, 3) mm."""
-    normal, radius = face.normal(uv), profile.corner_radius
-    point = face.evaluate(uv).point + (radius + allowance) * normal - radius * axes
+    normal = face.normal(uv)
+    radius = profile.corner_radius
+    touched = face.evaluate(uv).point
+    point = touched + (radius + allowance) * normal - radius * axes
     if profile.flat_radius == 0:
         return np.asarray(point)
     across = normal - dot(normal, axes)[:, None] * axes

@@ -131,8 +131,10 @@ def _make_rays(face: Face, spacing: float) -> Rays:
     both = np.vstack([uv, edge])
     d = face.evaluate(both)
     normal = face.normal(both)
-    weight = np.append(np.linalg.norm(np.cross(d.su, d.sv), axis=1)[:len(uv)] * cell, np.zeros(len(edge)))
-    border = np.arange(len(both)) >= len(uv)
+    inside = len(uv)
+    stretch = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    weight = np.append(stretch[:inside] * cell, np.zeros(len(edge)))
+    border = np.arange(len(both)) >= inside
     good = np.linalg.norm(normal, axis=1) > 0.5
     return Rays(both[good], d.point[good], normal[good], weight[good], border[good], float(spacing))
 
@@ -143,26 +145,31 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     Of the places only those on the face.
     """
     u0, u1, v0, v1 = face.bounds
-    u, v = np.linspace(u0, u1, _FINE), np.linspace(v0, v1, _FINE)
-    grid = grid_rows(u, v)
-    speed_v = np.linalg.norm(face.evaluate(grid).sv, axis=1).reshape(_FINE, _FINE).max(axis=0)
+    u = np.linspace(u0, u1, _FINE)
+    v = np.linspace(v0, v1, _FINE)
+    speed = np.linalg.norm(face.evaluate(grid_rows(u, v)).sv, axis=1)
+    speed_v = speed.reshape(_FINE, _FINE).max(axis=0)
     length = _lengths(v, speed_v)
     mark = length / length[-1]
     rows = int(_parts(length, spacing))
     middles = np.interp((np.arange(rows) + 0.5) / rows, mark, v)
     lines = np.interp(np.arange(rows + 1) / rows, mark, v)
     across = _lengths_across(face, middles, u)
-    counts = _parts(across, spacing)
-    before = np.cumsum(counts) - counts
+    cells_of_row = _parts(across, spacing)
+    before = np.cumsum(cells_of_row) - cells_of_row
     low, high = _reach_of_rows(face, lines)
-    found, tried = [np.empty((0, 3))], [np.empty((0, 3))]
+    found = [np.empty((0, 3))]
+    tried = [np.empty((0, 3))]
     for row in np.flatnonzero(low <= high):
-        count = counts[row]
-        column = _columns_within(low[row], high[row], (u, across[row]), count)
+        number = cells_of_row[row]
+        column = _columns_within(low[row], high[row], u, across[row], number)
         k = before[row] + 1 + column
-        at_u, step_u = _place_at_shares(u, across[row], (column + np.mod(0.5 + k * _R2[0], 1.0)) / count)
-        at_v, step_v = _place_at_shares(v, length, (row + np.mod(0.5 + k * _R2[1], 1.0)) / rows)
-        tried.append(np.column_stack([at_u, at_v, step_u * step_v / (count * rows)]))
+        share_u = (column + _place_in_cell(k, 0)) / number
+        share_v = (row + _place_in_cell(k, 1)) / rows
+        at_u, step_u = _place_at_shares(u, across[row], share_u)
+        at_v, step_v = _place_at_shares(v, length, share_v)
+        area = step_u * step_v / (number * rows)
+        tried.append(np.column_stack([at_u, at_v, area]))
         if sum(map(len, tried)) >= _TRIED:
             found.append(_places_on(face, tried))
             tried = [np.empty((0, 3))]
@@ -170,21 +177,28 @@ def _cells(face: Face, spacing: float) -> tuple[Array, Array]:
     return places[:, :2], places[:, 2]
 
 
-def _columns_within(low: float, high: float, line: tuple[Array, Array], count: int) -> NDArray[np.int64]:
-    """Numbers of a row's cells that come between two values of u.
+def _place_in_cell(number: NDArray[np.int64], which: int) -> Array:
+    """Where rays stand in their cells along u (0) or v (1), 0 to 1."""
+    return np.asarray(np.mod(0.5 + number * _R2[which], 1.0))
+
+
+def _columns_within(low: float, high: float, u: Array, length: Array, number: int) -> NDArray[np.int64]:
+    """Columns of a row's cells that come between two values of u.
 
     Parameters
     ----------
     low, high : float
-    line : (k,) arrays
+    u, length : (k,) arrays
         Values of u, and the lengths along the row up to them.
-    count : int
+    number : int
         Cells of equal length in the row.
     """
-    u, length = line
-    first, last = np.floor(np.interp([low, high], u, length / length[-1]) * count).astype(np.int64)
+    shares = np.interp([low, high], u, length / length[-1])
+    first, last = np.floor(shares * number).astype(np.int64)
     # A place lies in its cell but for rounding: one more is tried at either end.
-    return np.arange(max(first - 1, 0), min(last + 1, count - 1) + 1)
+    begin = max(first - 1, 0)
+    end = min(last + 1, number - 1)
+    return np.arange(begin, end + 1)
 
 
 def _places_on(face: Face, tried: list[Array]) -> Array:
@@ -195,12 +209,14 @@ def _places_on(face: Face, tried: list[Array]) -> Array:
 
 def _lengths_across(face: Face, middles: Array, u: Array) -> Array:
     """Lengths along lines of constant v up to values of u, (rows, k) mm."""
-    parts, at_once = [], max(1, _TRIED // len(u))
+    parts = []
+    at_once = max(1, _TRIED // len(u))
     for first in range(0, len(middles), at_once):
         some = middles[first:first + at_once]
-        line = np.stack(np.meshgrid(some, u, indexing="ij")[::-1], axis=-1).reshape(-1, 2)
-        speed = np.linalg.norm(face.evaluate(line).su, axis=1).reshape(len(some), len(u))
-        parts.append(_lengths(u, speed))
+        at_v, at_u = np.meshgrid(some, u, indexing="ij")
+        line = np.stack([at_u, at_v], axis=-1).reshape(-1, 2)
+        speed = np.linalg.norm(face.evaluate(line).su, axis=1)
+        parts.append(_lengths(u, speed.reshape(len(some), len(u))))
     return np.concatenate(parts)
 
 
@@ -210,14 +226,16 @@ def _reach_of_rows(face: Face, lines: Array) -> tuple[Array, Array]:
 
     Whatever lies on the face has the edges of a loop on both sides, which cross its row.
     """
-    low, high = np.full(len(lines) - 1, np.inf), np.full(len(lines) - 1, -np.inf)
+    rows = len(lines) - 1
+    low = np.full(rows, np.inf)
+    high = np.full(rows, -np.inf)
     rounding = _ROUNDING * (lines[-1] - lines[0])
     for loop in face.outline:
         following = np.roll(loop, -1, axis=0)
         left, bottom = np.minimum(loop, following).T
         right, top = np.maximum(loop, following).T
-        first = np.clip(np.searchsorted(lines, bottom - rounding, side="right") - 1, 0, len(low) - 1)
-        last = np.clip(np.searchsorted(lines, top + rounding, side="right") - 1, 0, len(low) - 1)
+        first = _row_of(lines, bottom - rounding)
+        last = _row_of(lines, top + rounding)
         crossed = last - first + 1
         edge, number = number_parts(crossed)
         row = first[edge] + number
@@ -226,24 +244,37 @@ def _reach_of_rows(face: Face, lines: Array) -> tuple[Array, Array]:
     return low, high
 
 
+def _row_of(lines: Array, values: Array) -> NDArray[np.intp]:
+    """Numbers of the rows that values of v lie in, or of the nearest row."""
+    row = np.searchsorted(lines, values, side="right") - 1
+    return np.clip(row, 0, len(lines) - 2)
+
+
 def _lengths(t: Array, speed: Array) -> Array:
     """Lengths along lines of known speeds, (..., k), strictly increasing from 0."""
-    floor = np.maximum(speed, 1e-9 * np.maximum(speed.max(axis=-1, keepdims=True), 1e-300))
+    fastest = np.maximum(speed.max(axis=-1, keepdims=True), 1e-300)
+    floor = np.maximum(speed, 1e-9 * fastest)
     steps = 0.5 * (floor[..., 1:] + floor[..., :-1]) * np.diff(t)
-    return np.concatenate([np.zeros_like(steps[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
+    begin = np.zeros_like(steps[..., :1])
+    return np.concatenate([begin, np.cumsum(steps, axis=-1)], axis=-1)
 
 
 def _parts(length: Array, spacing: float) -> NDArray[np.int64]:
     """Number of cells along lines of such lengths."""
-    return np.maximum(1, np.ceil(length[..., -1] / spacing - 1e-9)).astype(np.int64)
+    whole = length[..., -1] / spacing
+    parts = np.ceil(whole - 1e-9)
+    return np.maximum(1, parts).astype(np.int64)
 
 
 def _place_at_shares(t: Array, length: Array, share: Array) -> tuple[Array, Array]:
     """Parameters at shares of a line's length, and their rate of change with the share."""
     mark = length / length[-1]
-    piece = np.clip(np.searchsorted(mark, share, side="right") - 1, 0, len(t) - 2)
-    rate = (t[piece + 1] - t[piece]) / (mark[piece + 1] - mark[piece])
-    return t[piece] + (share - mark[piece]) * rate, rate
+    piece = np.searchsorted(mark, share, side="right") - 1
+    piece = np.clip(piece, 0, len(t) - 2)
+    begin = t[piece]
+    behind = piece + 1
+    rate = (t[behind] - begin) / (mark[behind] - mark[piece])
+    return begin + (share - mark[piece]) * rate, rate
 
 
 def border_points(face: Face, spacing: float) -> Array:
@@ -269,15 +300,18 @@ def loop_points(face: Face, loop: Array, spacing: float) -> Array:
         mm
     """
     ends = np.roll(loop, -1, axis=0)
+    sides = ends - loop
     fine = 257 if len(loop) <= 16 else 9
     share = np.linspace(0.0, 1.0, fine)
-    line = loop[:, None] + share[None, :, None] * (ends - loop)[:, None]
-    point = face.evaluate(line.reshape(-1, 2)).point.reshape(len(loop), fine, 3)
-    longest = (fine - 1) * np.linalg.norm(np.diff(point, axis=1), axis=2).max(axis=1)
-    parts = np.maximum(1, np.ceil(longest / spacing)).astype(np.int64)
+    line = loop[:, None] + share[None, :, None] * sides[:, None]
+    point = face.evaluate(line.reshape(-1, 2)).point
+    chords = np.diff(point.reshape(len(loop), fine, 3), axis=1)
+    longest = np.linalg.norm(chords, axis=2).max(axis=1)
+    bound = (fine - 1) * longest
+    parts = np.maximum(1, np.ceil(bound / spacing)).astype(np.int64)
     edge, number = number_parts(parts)
     step = (number / parts[edge])[:, None]
-    return np.asarray(loop[edge] + step * (ends - loop)[edge])
+    return np.asarray(loop[edge] + step * sides[edge])
 
 
 def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
@@ -293,11 +327,13 @@ def patch_around(face: Face, uv: Array, size: float, count: int = 5) -> Array:
         Points along a side.
     """
     d = face.evaluate(uv)
-    scale = np.stack([np.linalg.norm(d.su, axis=1), np.linalg.norm(d.sv, axis=1)], axis=1)
+    pace_u = np.linalg.norm(d.su, axis=1)
+    pace_v = np.linalg.norm(d.sv, axis=1)
+    pace = np.stack([pace_u, pace_v], axis=1)
     u0, u1, v0, v1 = face.bounds
-    way = np.minimum(size / np.maximum(scale, 1e-12), [u1 - u0, v1 - v0])
+    way = np.minimum(size / np.maximum(pace, 1e-12), [u1 - u0, v1 - v0])
     side = np.linspace(-1.0, 1.0, count)
     offset = grid_rows(side, side)
-    around = (uv[:, None] + offset * way[:, None]).reshape(-1, 2)
-    around = np.clip(around, [u0, v0], [u1, v1])
+    around = uv[:, None] + offset * way[:, None]
+    around = np.clip(around.reshape(-1, 2), [u0, v0], [u1, v1])
     return np.asarray(around[face.contains(around)], dtype=np.float64)

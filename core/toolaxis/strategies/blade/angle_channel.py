@@ -52,7 +52,9 @@ class AngleChannel:
         low, high : (n,) array
             rad
         """
-        return _rising(self.lengths, np.maximum(self.low, low), np.minimum(self.high, high))
+        further_low = np.maximum(self.low, low)
+        further_high = np.minimum(self.high, high)
+        return _rising(self.lengths, further_low, further_high)
 
     def narrowed(self, clearance: float, place: str = "the section") -> "AngleChannel":
         """The channel less a clearance on both sides.
@@ -84,15 +86,21 @@ class AngleChannel:
         ----------
         lengths, theta : (k,) array
         """
-        low, high = (np.interp(lengths, self.lengths, side) for side in (self.low, self.high))
+        low = np.interp(lengths, self.lengths, self.low)
+        high = np.interp(lengths, self.lengths, self.high)
         return np.minimum(theta - low, high - theta)
 
 
 def _rising(lengths: Array, low: Array, high: Array) -> AngleChannel:
     """What a curve that never falls, and gains a turn in each turn around, can use of limits for one turn around."""
-    before, after = low - 2 * pi, high + 2 * pi
-    top = np.minimum.accumulate(np.concatenate([high, after])[::-1])[::-1][:len(high)]
-    bottom = np.maximum.accumulate(np.concatenate([before, low]))[len(low):]
+    turn_before = low - 2 * pi
+    turn_after = high + 2 * pi
+    both_high = np.concatenate([high, turn_after])
+    both_low = np.concatenate([turn_before, low])
+    least_from_here = np.minimum.accumulate(both_high[::-1])[::-1]
+    greatest_up_to_here = np.maximum.accumulate(both_low)
+    top = least_from_here[:len(high)]
+    bottom = greatest_up_to_here[len(low):]
     return AngleChannel(lengths, bottom, top)
 
 
@@ -121,22 +129,27 @@ def channel(one: Section, tool: Tool | None = None) -> AngleChannel:
     made = _rising(one.lengths, one.behind - pi, one.ahead)
     if tool is None:
         return made
-    low, high = made.low + tool.half_angle, made.high - tool.half_angle
+    low = made.low + tool.half_angle
+    high = made.high - tool.half_angle
     if _wider(tool):
-        bars = clear_angle_range(one, tool)
-        low, high = np.maximum(low, bars[0]), np.minimum(high, bars[1])
+        least, greatest = clear_angle_range(one, tool)
+        low = np.maximum(low, least)
+        high = np.minimum(high, greatest)
     return _rising(one.lengths, low, high)
 
 
 def _wider(tool: Tool) -> bool:
     """Whether some of the tool leaves the cone that touches its ball, or the cylinder."""
-    (rho, z), line = tool.profile.tangent_point, _side(tool)
-    return bool((line[:, 0] > rho + np.tan(tool.half_angle) * (line[:, 1] - z) + 1e-9).any())
+    rho, z = tool.profile.tangent_point
+    line = _side(tool)
+    cone = rho + np.tan(tool.half_angle) * (line[:, 1] - z)
+    return bool((line[:, 0] > cone + 1e-9).any())
 
 
 def _side(tool: Tool) -> Array:
     """Corners (radius, z) of the tool's side above the ball, upwards."""
-    ends = [tool.profile.tangent_point, (tool.profile.top_radius, tool.profile.top)]
+    profile = tool.profile
+    ends = [profile.tangent_point, (profile.top_radius, profile.top)]
     return np.concatenate([np.array(ends), *tool.outlines.values()])
 
 
@@ -150,18 +163,23 @@ def half_angles(tool: Tool, distances: Array) -> Array:
         Radii of the circles, mm; half of a circle counts within the ball's radius.
     """
     corners = _side(tool)
+    ball = tool.corner_radius
     share = np.linspace(0.0, 1.0, _FINE)[:, None]
     fine = np.concatenate([a + (b - a) * share for a, b in pairwise(corners)])
-    reach = np.hypot(fine[:, 0], fine[:, 1] - tool.corner_radius)
-    angle = np.arctan2(fine[:, 0], fine[:, 1] - tool.corner_radius)
-    edges = np.linspace(tool.corner_radius, reach.max(), _TABLE)
+    radius = fine[:, 0]
+    height = fine[:, 1] - ball
+    reach = np.hypot(radius, height)
+    angle = np.arctan2(radius, height)
+    farthest = reach.max()
+    edges = np.linspace(ball, farthest, _TABLE)
     table = np.zeros(_TABLE)
     for a, b, one, other in zip(reach[:-1], reach[1:], angle[:-1], angle[1:], strict=True):
         first, last = np.searchsorted(edges, (min(a, b), max(a, b)))
         span = slice(max(first - 1, 0), last + 1)
         table[span] = np.maximum(table[span], max(one, other))
     found = np.interp(distances, edges, table)
-    return np.where(distances <= tool.corner_radius, pi / 2, np.where(distances > reach.max(), 0.0, found))
+    found = np.where(distances > farthest, 0.0, found)
+    return np.where(distances <= ball, pi / 2, found)
 
 
 def clear_angle_range(one: Section, tool: Tool) -> tuple[Array, Array]:
@@ -179,20 +197,29 @@ def clear_angle_range(one: Section, tool: Tool) -> tuple[Array, Array]:
     hang together, from the tangent ahead to the one behind.
     """
     inner = one.points[:-1]
+    number = len(inner)
     way = (one.ahead[:-1] + one.behind[:-1]) / 2
-    blade = inner + tool.corner_radius * np.column_stack([-np.sin(way), np.cos(way)])
-    count = len(inner)
-    order = (np.arange(count)[:, None] + np.arange(count)) % count
+    inwards = np.column_stack([-np.sin(way), np.cos(way)])
+    blade = inner + tool.corner_radius * inwards
+    every = np.arange(number)
+    order = (every[:, None] + every) % number
     seen = blade[order] - inner[:, None]
     distance = np.hypot(seen[..., 0], seen[..., 1])
     angle = np.arctan2(seen[..., 1], seen[..., 0])
-    begin = way + pi / 2
-    angle = begin[:, None] + np.cumsum(np.concatenate([_turn(angle[:, :1] - begin[:, None]),
-                                                       _turn(np.diff(angle, axis=1))], axis=1), axis=1)
+    begin = (way + pi / 2)[:, None]
+    # Unwrapped from the tangent ahead on, point by point.
+    first_turn = _turn(angle[:, :1] - begin)
+    turns = _turn(np.diff(angle, axis=1))
+    angle = begin + np.cumsum(np.concatenate([first_turn, turns], axis=1), axis=1)
     half = np.minimum(half_angles(tool, distance), pi / 2)
     high = (angle - half).min(axis=1)
     low = (angle + half).max(axis=1) - 2 * pi
-    return np.append(low, low[0] + 2 * pi), np.append(high, high[0] + 2 * pi)
+    return _close(low), _close(high)
+
+
+def _close(angles: Array) -> Array:
+    """Angles around a section with the first one, a turn later, at their end."""
+    return np.append(angles, angles[0] + 2 * pi)
 
 
 def _turn(angle: Array) -> Array:

@@ -54,20 +54,27 @@ class Ring:
     @property
     def _bounds(self) -> tuple[float, float, float, float]:
         u0, u1, v0, v1 = self.face.bounds
-        return (u0, u1, v0, v1) if self.feed == "u" else (v0, v1, u0, u1)
+        if self.feed == "u":
+            return u0, u1, v0, v1
+        return v0, v1, u0, u1
 
     def _uv(self, along: Array, step: Array) -> Array:
-        return np.column_stack([along, step] if self.feed == "u" else [step, along])
+        columns = [along, step] if self.feed == "u" else [step, along]
+        return np.column_stack(columns)
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """Places around, steps along the span from the root to the tip, and heights there, (k, m)."""
         a0, a1, s0, s1 = self._bounds
-        along, step = np.linspace(a0, a1, _AROUND + 1), np.linspace(s0, s1, _SPAN)
-        grid = [part.ravel() for part in np.meshgrid(along, step, indexing="ij")]
-        heights = (self.face.evaluate(self._uv(*grid)).point @ self.direction).reshape(_AROUND + 1, _SPAN)
+        along = np.linspace(a0, a1, _AROUND + 1)
+        step = np.linspace(s0, s1, _SPAN)
+        every_along, every_step = np.meshgrid(along, step, indexing="ij")
+        uv = self._uv(every_along.ravel(), every_step.ravel())
+        heights = self.face.evaluate(uv).point @ self.direction
+        heights = heights.reshape(_AROUND + 1, _SPAN)
         if heights[:, -1].mean() < heights[:, 0].mean():
-            step, heights = step[::-1], heights[:, ::-1]
+            step = step[::-1]
+            heights = heights[:, ::-1]
         if not (np.diff(heights, axis=1) > 0).all():
             raise InvalidInput(f"planes across the rotary axis cut face {self.face.label} more than once between root "
                                "and tip: turn the part on the table so that its blade stands along that axis")
@@ -83,7 +90,8 @@ class Ring:
             When none does.
         """
         _, _, heights = self._table
-        low, high = float(heights[:, 0].max()), float(heights[:, -1].min())
+        low = float(heights[:, 0].max())
+        high = float(heights[:, -1].min())
         if not low < high:
             raise InvalidInput(f"no plane across the rotary axis cuts face {self.face.label} all around: its sections "
                                "are open; turn the part so that the blade stands along that axis")
@@ -96,19 +104,31 @@ class Ring:
         ----------
         along, heights : (n,) array
         """
+        t = self._steps_by_table(along, heights)
+        _, _, s0, s1 = self._bounds
+        low, high = sorted((float(s0), float(s1)))
+        for _ in range(_NEWTON):
+            within = np.clip(t, low, high)
+            d = self.face.evaluate(self._uv(along, within))
+            rate = d.sv if self.feed == "u" else d.su
+            slope = rate @ self.direction
+            above = d.point @ self.direction - heights
+            t = within - above / slope
+        return np.asarray(np.clip(t, low, high))
+
+    def _steps_by_table(self, along: Array, heights: Array) -> Array:
+        """About the same, from the table of heights by straight lines."""
         places, step, table = self._table
         share = (along - places[0]) / (places[1] - places[0])
         k = np.clip(share.astype(int), 0, len(places) - 2)
-        rows = table[k] + (share - k)[:, None] * (table[k + 1] - table[k])
-        j = np.clip((rows < heights[:, None]).sum(axis=1) - 1, 0, len(step) - 2)
+        rest = (share - k)[:, None]
+        rows = table[k] + rest * (table[k + 1] - table[k])
+        below = (rows < heights[:, None]).sum(axis=1)
+        j = np.clip(below - 1, 0, len(step) - 2)
         at = np.arange(len(along))
-        t = step[j] + (step[j + 1] - step[j]) * (heights - rows[at, j]) / (rows[at, j + 1] - rows[at, j])
-        low, high = sorted((float(step[0]), float(step[-1])))
-        for _ in range(_NEWTON):
-            d = self.face.evaluate(self._uv(along, np.clip(t, low, high)))
-            slope = (d.sv if self.feed == "u" else d.su) @ self.direction
-            t = np.clip(t, low, high) - (d.point @ self.direction - heights) / slope
-        return np.asarray(np.clip(t, low, high))
+        lower = rows[at, j]
+        gap = step[j + 1] - step[j]
+        return np.asarray(step[j] + gap * (heights - lower) / (rows[at, j + 1] - lower))
 
     def at(self, along: Array, heights: Array) -> tuple[Array, Array, Array]:
         """Contacts, normals and cutter centres, (n, 3) each.
@@ -118,7 +138,8 @@ class Ring:
         along, heights : (n,) array
         """
         uv = self._uv(along, self.steps(along, heights))
-        point, normal = self.face.evaluate(uv).point, self.face.normal(uv)
+        point = self.face.evaluate(uv).point
+        normal = self.face.normal(uv)
         return point, normal, point + self.reach * normal
 
     def places(self, chord: float) -> Array:
@@ -134,17 +155,29 @@ class Ring:
         need = np.zeros(_SAMPLES)
         low, high = self.span
         for share in _HEIGHTS:
-            point, normal, centre = self.at(fine, np.full(_SAMPLES + 1, low + share * (high - low)))
-            way = np.linalg.norm(np.diff(centre, axis=0), axis=1)
-            bend = 2 * np.arcsin(np.clip(np.linalg.norm(np.diff(normal, axis=0), axis=1) / 2, 0, 1))
-            for path in (point, centre):
-                size = np.linalg.norm(np.diff(path, axis=0), axis=1)
-                need = np.maximum(need, 1.1 * np.sqrt(bend * size / (8 * chord)))
-            need = np.maximum(need, np.maximum(way / _STEP, bend / _BEND))
-        need = np.maximum(np.maximum(need, np.roll(need, 1)), np.roll(need, -1))
+            height = low + share * (high - low)
+            at_height = self._parts_needed(fine, height, chord)
+            need = np.maximum(need, at_height)
+        from_before = np.maximum(need, np.roll(need, 1))
+        need = np.maximum(from_before, np.roll(need, -1))
         total = np.concatenate([[0.0], np.cumsum(need)])
-        count = int(np.ceil(total[-1])) + 1
-        return np.interp(np.linspace(0, total[-1], count), total, fine)
+        number = int(np.ceil(total[-1])) + 1
+        even = np.linspace(0, total[-1], number)
+        return np.interp(even, total, fine)
+
+    def _parts_needed(self, along: Array, height: float, chord: float) -> Array:
+        """Into how many parts each gap between places at one height has to be divided, (n - 1,); less than one where a
+        part may be longer."""
+        point, normal, centre = self.at(along, np.full(len(along), height))
+        turn = np.linalg.norm(np.diff(normal, axis=0), axis=1)
+        bend = 2 * np.arcsin(np.clip(turn / 2, 0, 1))
+        way = np.linalg.norm(np.diff(centre, axis=0), axis=1)
+        need = np.maximum(way / _STEP, bend / _BEND)
+        for path in (point, centre):
+            size = np.linalg.norm(np.diff(path, axis=0), axis=1)
+            by_chord = 1.1 * np.sqrt(bend * size / (8 * chord))
+            need = np.maximum(need, by_chord)
+        return np.asarray(need)
 
     def heights(self, along: Array, scallop: float, allowance: float) -> Array:
         """Heights of layers, from the tip to the root, whose scallops stay below a height, (k,) mm.
@@ -158,32 +191,42 @@ class Ring:
         """
         low, high = self.span
         places = high - (high - low) * np.linspace(0.0, 0.97, _SPACED)
-        usual, steps = 2 * np.sqrt(2 * scallop * self.reach), []
+        usual = 2 * np.sqrt(2 * scallop * self.reach)
+        lift = _USED * scallop + allowance
+        steps = []
         for place in places:
-            usual = self._step(float(place), usual, along, _USED * scallop + allowance)
+            usual = self._step(float(place), usual, along, lift)
             steps.append(usual)
         found = [high]
         while found[-1] > low:
             if len(found) > _MOST:
                 raise InvalidInput(f"more than {_MOST} layers would be needed on face {self.face.label}: give "
                                    f"{LARGER_SCALLOP} or cutter")
-            step = _EVEN * float(np.interp(-found[-1], -places, steps))
-            found.append(max(found[-1] - step, low))
+            last = found[-1]
+            step = _EVEN * float(np.interp(-last, -places, steps))
+            found.append(max(last - step, low))
         return np.array(found)
 
     def _step(self, top: float, most: float, along: Array, lift: float) -> float:
         """How far below a layer the next one may lie."""
-        upper = self.at(along, np.full(len(along), top))[2]
-        first = self.steps(along, np.full(len(along), top))
-        good, bad = 0.0, np.inf
+        at_top = np.full(len(along), top)
+        upper = self.at(along, at_top)[2]
+        first = self.steps(along, at_top)
+        every_along = np.tile(along, len(_PLACES))
+        every_first = np.tile(first, len(_PLACES))
+        share = np.repeat(np.array(_PLACES), len(along))
+        good = 0.0
+        bad = np.inf
         for _ in range(_HALVINGS):
-            middle = (1.2 * good or most) if bad == np.inf else (good + bad) / 2
+            if bad == np.inf:
+                middle = 1.2 * good or most
+            else:
+                middle = (good + bad) / 2
             below = np.full(len(along), max(top - middle, self.span[0]))
             last = self.steps(along, below)
             lower = self.at(along, below)[2]
-            share = np.repeat(np.array(_PLACES), len(along))
-            uv = self._uv(np.tile(along, len(_PLACES)), np.tile(first, len(_PLACES)) * (1 - share)
-                          + np.tile(last, len(_PLACES)) * share)
+            between = every_first * (1 - share) + np.tile(last, len(_PLACES)) * share
+            uv = self._uv(every_along, between)
             points = self.face.evaluate(uv).point + lift * self.face.normal(uv)
             away = np.minimum(_to_curve(points, upper), _to_curve(points, lower))
             if (away <= self.reach).all():
@@ -198,16 +241,21 @@ class Ring:
 
 def _to_curve(points: Array, curve: Array) -> Array:
     """Distance of m rows of points to a closed polygon with as many points as a row, near the same place of it."""
-    count = len(curve) - 1
+    sides = len(curve) - 1
     rows = points.reshape(-1, len(curve), 3)
     best = np.full(rows.shape[:2], np.inf)
     here = np.arange(len(curve))
     for shift in range(-_BESIDE, _BESIDE):
-        a, b = curve[(here + shift) % count], curve[(here + shift) % count + 1]
-        way = b - a
-        t = np.clip(((rows - a) * way).sum(axis=2) / np.maximum((way**2).sum(axis=1), 1e-18), 0.0, 1.0)
-        best = np.minimum(best, np.linalg.norm(rows - a - t[..., None] * way, axis=2))
-    return best.ravel()
+        side = (here + shift) % sides
+        a = curve[side]
+        way = curve[side + 1] - a
+        square = np.maximum((way**2).sum(axis=1), 1e-18)
+        offset = rows - a
+        t = (offset * way).sum(axis=2) / square
+        t = np.clip(t, 0.0, 1.0)
+        away = np.linalg.norm(offset - t[..., None] * way, axis=2)
+        best = np.minimum(best, away)
+    return np.asarray(best.ravel())
 
 
 def find_closed_parameter(face: Face) -> str:
@@ -222,18 +270,27 @@ def find_closed_parameter(face: Face) -> str:
     InvalidInput
         When it closes in neither, or is trimmed.
     """
-    u0, u1, v0, v1 = face.bounds
     if face.trims:
         raise InvalidInput(f"face {face.label} is trimmed: layers go around a whole closed face of a blade")
-    share = np.linspace(0, 1, 9)
-    for name, ends in (("u", [np.column_stack([np.full(9, u), v0 + share * (v1 - v0)]) for u in (u0, u1)]),
-                       ("v", [np.column_stack([u0 + share * (u1 - u0), np.full(9, v)]) for v in (v0, v1)])):
-        one, other = (face.evaluate(uv).point for uv in ends)
+    u0, u1, v0, v1 = face.bounds
+    for name, begin, end in (("u", u0, u1), ("v", v0, v1)):
+        one = face.evaluate(_line_across(face, name, begin, 9)).point
+        other = face.evaluate(_line_across(face, name, end, 9)).point
         if np.linalg.norm(one - other, axis=1).max() <= _CLOSED * face.diagonal:
             return name
     raise InvalidInput(f"face {face.label} does not close around a blade, so its sections are open, and its "
                        "neighbours do not continue it smoothly all around: join the faces that go around, such as "
                        "1+3+4+7")
+
+
+def _line_across(face: Face, name: str, value: float, number: int) -> Array:
+    """Even places on the line along which a parameter has one value, (n, 2)."""
+    u0, u1, v0, v1 = face.bounds
+    share = np.linspace(0, 1, number)
+    held = np.full(number, value)
+    if name == "u":
+        return np.column_stack([held, v0 + share * (v1 - v0)])
+    return np.column_stack([u0 + share * (u1 - u0), held])
 
 
 def along_blade(face: Face, feed: str) -> Array:
@@ -247,11 +304,13 @@ def along_blade(face: Face, feed: str) -> Array:
     """
     u0, u1, v0, v1 = face.bounds
     total = np.zeros(3)
-    share = np.linspace(0, 1, 201)
     for place in (0.25, 0.5, 0.75):
-        uv = np.column_stack([u0 + share * (u1 - u0), np.full(201, v0 + place * (v1 - v0))]) if feed == "u" else \
-            np.column_stack([np.full(201, u0 + place * (u1 - u0)), v0 + share * (v1 - v0)])
+        if feed == "u":
+            uv = _line_across(face, "v", v0 + place * (v1 - v0), 201)
+        else:
+            uv = _line_across(face, "u", u0 + place * (u1 - u0), 201)
         rows = face.evaluate(uv).point
         rows = rows - rows.mean(axis=0)
-        total += np.asarray(unit(np.cross(rows[:-1], rows[1:]).sum(axis=0)))
+        areas = np.cross(rows[:-1], rows[1:])
+        total += np.asarray(unit(areas.sum(axis=0)))
     return np.asarray(unit(total))

@@ -76,7 +76,9 @@ def torus_curvatures(tool: Tool, lean: ArrayLike) -> tuple[Array, Array]:
     """
     check_bull_nose(tool, flat_too=False)
     sine = np.sin(np.abs(np.asarray(lean, dtype=float)))
-    return np.full_like(sine, 1 / tool.corner_radius), np.asarray(sine / (tool.flat_radius + tool.corner_radius * sine))
+    reach = tool.flat_radius + tool.corner_radius * sine
+    along = np.full_like(sine, 1 / tool.corner_radius)
+    return along, np.asarray(sine / reach)
 
 
 def evaluation_curvature(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: ArrayLike, direction: ArrayLike,
@@ -127,11 +129,15 @@ def critical_curvature(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean
     along, across = torus_curvatures(tool, lean)
     gamma = np.asarray(direction, dtype=float)
     k1, k2 = (np.asarray(k, dtype=float) for k in curvatures)
-    e = along * np.cos(gamma) ** 2 + across * np.sin(gamma) ** 2 - k1
-    f = along * np.sin(gamma) ** 2 + across * np.cos(gamma) ** 2 - k2
+    cosine = np.cos(gamma) ** 2
+    sine = np.sin(gamma) ** 2
+    e = along * cosine + across * sine - k1
+    f = along * sine + across * cosine - k2
     g = np.sin(2 * gamma) * (along - across)
+    least = (e + f - np.hypot(e - f, g)) / 2
     greatest = np.arctan2(g, e - f) / 2
-    return np.asarray((e + f - np.hypot(e - f, g)) / 2), np.asarray(np.mod(greatest + np.pi / 2, np.pi))
+    plane = np.mod(greatest + np.pi / 2, np.pi)
+    return np.asarray(least), np.asarray(plane)
 
 
 def least_lean(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], direction: ArrayLike) -> Array:
@@ -160,13 +166,17 @@ def least_lean(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], direction: A
     sin lean = R times the curvature at right angles to the lean.
     """
     check_bull_nose(tool)
-    a, r = tool.flat_radius, tool.corner_radius
+    a = tool.flat_radius
+    r = tool.corner_radius
     k1, k2 = (np.asarray(k, dtype=float) for k in curvatures)
-    beside = (k1 - k2) * np.sin(np.asarray(direction, dtype=float)) ** 2 + k2
+    angle = np.asarray(direction, dtype=float)
+    beside = (k1 - k2) * np.sin(angle) ** 2 + k2
     with np.errstate(divide="ignore", invalid="ignore"):
-        sine = np.asarray(a * (beside - r * k1 * k2) / ((1 - r * k1) * (1 - r * k2)))
+        room = (1 - r * k1) * (1 - r * k2)
+        sine = np.asarray(a * (beside - r * k1 * k2) / room)
     none = (r * k1 >= 1) | (sine > 1)
-    return np.asarray(np.where(none, np.inf, np.arcsin(np.clip(np.nan_to_num(sine), 0.0, 1.0))))
+    within = np.clip(np.nan_to_num(sine), 0.0, 1.0)
+    return np.asarray(np.where(none, np.inf, np.arcsin(within)))
 
 
 def nearest_feasible(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: ArrayLike,
@@ -194,21 +204,29 @@ def nearest_feasible(tool: Tool, curvatures: tuple[ArrayLike, ArrayLike], lean: 
 
     def _off(turn: Array) -> Array:
         border = least_lean(tool, (k1[:, None], k2[:, None]), direction[:, None] + turn)
-        return np.asarray(np.hypot(turn, np.maximum(border - lean[:, None], 0.0)))
+        missing = np.maximum(border - lean[:, None], 0.0)
+        return np.asarray(np.hypot(turn, missing))
 
     gap = 2 * np.pi / _DIRECTIONS
     turns = gap * np.arange(-_DIRECTIONS // 2, _DIRECTIONS // 2)
-    best = turns[np.argmin(_off(np.broadcast_to(turns, (len(lean), _DIRECTIONS))), axis=1)]
-    low, high = best - gap, best + gap
+    off = _off(np.broadcast_to(turns, (len(lean), _DIRECTIONS)))
+    best = turns[np.argmin(off, axis=1)]
+    low = best - gap
+    high = best + gap
     for _ in range(_STEPS):
-        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        nearer = _off(np.stack([left, right], axis=1))
-        lower = nearer[:, 0] < nearer[:, 1]
-        low, high = np.where(lower, low, left), np.where(lower, right, high)
+        inset = _GOLDEN * (high - low)
+        left = high - inset
+        right = low + inset
+        off = _off(np.stack([left, right], axis=1))
+        lower = off[:, 0] < off[:, 1]
+        low = np.where(lower, low, left)
+        high = np.where(lower, right, high)
     turn = (low + high) / 2
-    turn = np.where(least_lean(tool, (k1, k2), direction) <= lean, 0.0, turn)
+    is_feasible = least_lean(tool, (k1, k2), direction) <= lean
+    turn = np.where(is_feasible, 0.0, turn)
     border = least_lean(tool, (k1, k2), direction + turn)
     found = np.isfinite(border)
-    size = np.where(found, np.where(border > lean, border + _INSIDE, lean), lean)
+    nearest = np.where(border > lean, border + _INSIDE, lean)
+    size = np.where(found, nearest, lean)
     turn = np.where(found, turn, 0.0)
     return NearestOrientations(size, direction + turn, np.hypot(turn, size - lean), found)

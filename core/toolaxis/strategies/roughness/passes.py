@@ -56,13 +56,10 @@ class LeadField:
         uv : (n, 2) array
         """
         rows = uv if self.feed == "u" else uv[:, ::-1]
-        place = []
-        for values, grid in ((rows[:, 0], self.along), (rows[:, 1], self.step)):
-            at = np.interp(values, grid, np.arange(len(grid)))
-            low = np.clip(at.astype(int), 0, len(grid) - 2)
-            place.append((low, at - low))
-        (i, x), (j, y) = place
-        low, high = (self.leads[i, j + k] * (1 - x) + self.leads[i + 1, j + k] * x for k in (0, 1))
+        i, x = _cell_and_share(rows[:, 0], self.along)
+        j, y = _cell_and_share(rows[:, 1], self.step)
+        low = self.leads[i, j] * (1 - x) + self.leads[i + 1, j] * x
+        high = self.leads[i, j + 1] * (1 - x) + self.leads[i + 1, j + 1] * x
         return np.asarray(low * (1 - y) + high * y)
 
     def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
@@ -144,19 +141,33 @@ class SplineAxes:
         ----------
         along, step : (n,) array
         """
-        beside = np.abs(self.pieces[:, 2] - step[:, None])
-        off = np.maximum(np.maximum(self.pieces[:, 0] - along[:, None], along[:, None] - self.pieces[:, 1]), 0.0)
+        begin, end, step_of_piece = self.pieces.T
+        places = along[:, None]
+        beside = np.abs(step_of_piece - step[:, None])
+        off = np.maximum(begin - places, places - end)
+        off = np.maximum(off, 0.0)
         nearest = beside <= beside.min(axis=1, keepdims=True)
-        return np.asarray(np.where(nearest, off, np.inf).argmin(axis=1))
+        off = np.where(nearest, off, np.inf)
+        return np.asarray(off.argmin(axis=1))
 
     def axes(self, face: Face, uv: Array, frame: Frame | None = None) -> Array:
         """Unit axes at contacts; see `AxisField`."""
-        along, step = (uv if self.feed == "u" else uv[:, ::-1]).T
-        owner, axes = self.owners(along, step), np.empty((len(uv), 3))
+        rows = uv if self.feed == "u" else uv[:, ::-1]
+        along, step = rows.T
+        owner = self.owners(along, step)
+        axes = np.empty((len(uv), 3))
         for k in np.unique(owner):
             some = owner == k
-            axes[some] = tool_axes(self.machine, self.splines[k].angles(along[some])) @ self.turn
+            angles = self.splines[k].angles(along[some])
+            axes[some] = tool_axes(self.machine, angles) @ self.turn
         return axes
+
+
+def _cell_and_share(values: Array, grid: Array) -> tuple[NDArray[np.intp], Array]:
+    """In which cell of a grid's lines values lie, and at what share of it; beyond the grid at its ends."""
+    at = np.interp(values, grid, np.arange(len(grid)))
+    cell = np.clip(at.astype(np.intp), 0, len(grid) - 2)
+    return cell, at - cell
 
 
 def evaluation_length(roughness: float) -> float:
@@ -191,21 +202,34 @@ def spots(face: Face, feed: str, length: float, counts: tuple[int, int] = (10, 9
     InvalidInput
         When no profile of this length lies on the face.
     """
-    u0, u1, v0, v1 = face.bounds
     d = face.evaluate(face.grid(9, 9))
-    pace = np.linalg.norm(d.sv if feed == "u" else d.su, axis=1).min()
-    inset = np.array([0.0, _INSET * length / pace] if feed == "u" else [_INSET * length / pace, 0.0])
-    ranges = [(low + gap, high - gap) if high - low > 2 * gap else ((low + high) / 2,) * 2
-              for low, high, gap in ((u0, u1, inset[0]), (v0, v1, inset[1]))]
-    u, v = (low + (high - low) * (np.arange(n) + 0.5) / n for (low, high), n in zip(ranges, counts, strict=True))
+    across = d.sv if feed == "u" else d.su
+    pace = np.linalg.norm(across, axis=1).min()
+    gap = _INSET * length / pace
+    gap_u, gap_v = (0.0, gap) if feed == "u" else (gap, 0.0)
+    u0, u1, v0, v1 = face.bounds
+    u = _even_places(u0, u1, gap_u, counts[0])
+    v = _even_places(v0, v1, gap_v, counts[1])
     uv = grid_rows(u, v)
-    ends = section_parameters(face, uv, np.linspace(-0.5, 0.5, 9) * length, feed)
-    on = face.contains(ends.reshape(-1, 2)).reshape(len(uv), -1).all(axis=1)
-    on &= ((ends >= [u0, v0]) & (ends <= [u1, v1])).all(axis=(1, 2))
+    offsets = np.linspace(-0.5, 0.5, 9) * length
+    ends = section_parameters(face, uv, offsets, feed)
+    on_face = face.contains(ends.reshape(-1, 2)).reshape(len(uv), -1)
+    in_bounds = (ends >= [u0, v0]) & (ends <= [u1, v1])
+    on = on_face.all(axis=1) & in_bounds.all(axis=(1, 2))
     if not on.any():
         raise InvalidInput(f"face {face.label} holds no profile of {length:g} mm across the feed along {feed}: its "
                            "roughness cannot be evaluated; take the other feed")
     return np.asarray(uv[on])
+
+
+def _even_places(low: float, high: float, gap: float, number: int) -> Array:
+    """Middles of equal parts of a range less a gap at both ends; all in its middle where the gaps leave nothing."""
+    begin = low + gap
+    end = high - gap
+    if high - low <= 2 * gap:
+        begin = end = (low + high) / 2
+    share = np.arange(number) + 0.5
+    return begin + (end - begin) * share / number
 
 
 def roughness_at(face: Face, cut: MovingCut[Any], steps: Array, uv: Array, length: float) -> Array:
@@ -232,33 +256,42 @@ def roughness_at(face: Face, cut: MovingCut[Any], steps: Array, uv: Array, lengt
     offsets = np.linspace(-0.5, 0.5, _PROFILE) * length
     at = section_parameters(face, uv, offsets, cut.feed)
     points, normal = section_points(face, at)
-    low, high = at[..., 1 - ahead].min(axis=1), at[..., 1 - ahead].max(axis=1)
-    first = np.clip(np.searchsorted(steps, low) - 2, 0, max(len(steps) - 1, 0))
-    last = np.clip(np.searchsorted(steps, high) + 1, 0, len(steps) - 1)
+    along_profiles = at[..., ahead]
+    step_profiles = at[..., 1 - ahead]
+    low = step_profiles.min(axis=1)
+    high = step_profiles.max(axis=1)
+    last_pass = len(steps) - 1
+    first = np.clip(np.searchsorted(steps, low) - 2, 0, max(last_pass, 0))
+    last = np.clip(np.searchsorted(steps, high) + 1, 0, last_pass)
+    most = int((last - first).max())
     passes = []
-    for k in range(int((last - first).max()) + 1):
+    for k in range(most + 1):
         step = steps[np.minimum(first + k, last)]
-        along = np.array([np.interp(s, *_growing(row[:, 1 - ahead], row[:, ahead])) for s, row in
-                          zip(step, at, strict=True)])
-        passes.append(_positions(face, cut, along, step))
+        along = [np.interp(s, *_growing(x, y)) for s, x, y in zip(step, step_profiles, along_profiles, strict=True)]
+        passes.append(_positions(face, cut, np.array(along), step))
     heights = profile_heights(cut.tool, points, normal, passes, cut.allowance)
     return arithmetic_roughness(heights)
 
 
 def _growing(x: Array, y: Array) -> tuple[Array, Array]:
-    return (x, y) if x[-1] >= x[0] else (x[::-1], y[::-1])
+    if x[-1] >= x[0]:
+        return x, y
+    return x[::-1], y[::-1]
 
 
 def _positions(face: Face, cut: MovingCut[Any], along: Array, step: Array) -> tuple[Array, Array]:
     """Tips and axes of passes around places, (n, k, 3) each."""
     ahead = 0 if cut.feed == "u" else 1
-    middle = np.stack([along, step] if ahead == 0 else [step, along], axis=1)
+    columns = [along, step] if ahead == 0 else [step, along]
+    middle = np.stack(columns, axis=1)
     d = face.evaluate(middle)
     speed = np.linalg.norm(d.su if ahead == 0 else d.sv, axis=1)
     t = np.linspace(-_WINDOW, _WINDOW, _POSITIONS)
+    away = t / np.maximum(speed, 1e-9)[:, None]
     every = np.repeat(middle, len(t), axis=0)
-    every[:, ahead] += (t / np.maximum(speed, 1e-9)[:, None]).ravel()
+    every[:, ahead] += away.ravel()
     point, normal = section_points(face, every[None])
     axes = cut.axes(face, every)
     shape = (len(along), len(t), 3)
-    return tips(point[0], normal[0], axes, cut.tool, cut.allowance).reshape(shape), axes.reshape(shape)
+    tip = tips(point[0], normal[0], axes, cut.tool, cut.allowance)
+    return tip.reshape(shape), axes.reshape(shape)

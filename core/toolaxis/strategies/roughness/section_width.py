@@ -63,35 +63,52 @@ class Sections:
         cutter = cutter_parameters(self.tool, self.scallop, self.allowance)
         tip = tips(self.point, self.normal, axis, self.tool, self.allowance)
         spend(_QUESTION + self.lifted[..., 0].size)
-        away = cutter_distances(cutter, self.lifted - tip[:, None, None], axis[:, None, None])
-        at_contact = np.full((*away.shape[:2], 1), -min(self.scallop, self.tool.radius))
+        from_tip = self.lifted - tip[:, None, None]
+        away = cutter_distances(cutter, from_tip, axis[:, None, None])
+        depth = min(self.scallop, self.tool.radius)
+        at_contact = np.full((*away.shape[:2], 1), -depth)
         distance = np.concatenate([at_contact, away], axis=2)
         places = np.concatenate([[0.0], self.places])
         outside = away > 0
         ends = outside.any(axis=2)
         first_outside = np.argmax(outside, axis=2) + 1
         k = np.where(ends, first_outside, len(places) - 1)
-        return np.where(ends, _crossing(places, distance, k), places[-1])
+        crossing = _crossing(places, distance, k)
+        return np.where(ends, crossing, places[-1])
 
 
 def _crossing(places: Array, values: Array, k: NDArray[np.intp]) -> Array:
     """Where the cubic through four values around the gap before each k vanishes."""
-    begin = np.clip(k - 2, 1, len(places) - 4)[..., None] + np.arange(4)
-    at, some = places[begin], np.take_along_axis(values, begin, axis=2)
-    low, high = places[k - 1], places[k]
-    before, after = (np.take_along_axis(values, (k - j)[..., None], axis=2)[..., 0] for j in (1, 0))
-    slope = np.where(after > before, after - before, 1.0)
+    first = np.clip(k - 2, 1, len(places) - 4)
+    begin = first[..., None] + np.arange(4)
+    at = places[begin]
+    some = np.take_along_axis(values, begin, axis=2)
+    low = places[k - 1]
+    high = places[k]
+    before = np.take_along_axis(values, (k - 1)[..., None], axis=2)[..., 0]
+    after = np.take_along_axis(values, k[..., None], axis=2)[..., 0]
+    rises = after > before
+    slope = np.where(rises, after - before, 1.0)
     x = low - before * (high - low) / slope
     for _ in range(_END_STEPS):
-        f, df = np.zeros_like(x), np.zeros_like(x)
-        for i in range(4):
-            others = [j for j in range(4) if j != i]
-            part = [x - at[..., j] for j in others]
-            scale = some[..., i] / np.prod([at[..., i] - at[..., j] for j in others], axis=0)
-            f += scale * part[0] * part[1] * part[2]
-            df += scale * (part[0] * part[1] + part[0] * part[2] + part[1] * part[2])
-        x = np.clip(x - f / np.where(df > 0, df, np.inf), low, high)
+        f, df = _cubic_through(at, some, x)
+        step = f / np.where(df > 0, df, np.inf)
+        x = np.clip(x - step, low, high)
     return np.asarray(x)
+
+
+def _cubic_through(at: Array, values: Array, x: Array) -> tuple[Array, Array]:
+    """The cubic through four values (..., 4) at places, and its slope, at x (...): Lagrange's form."""
+    f = np.zeros_like(x)
+    df = np.zeros_like(x)
+    for i in range(4):
+        others = [j for j in range(4) if j != i]
+        a, b, c = (x - at[..., j] for j in others)
+        apart = np.prod([at[..., i] - at[..., j] for j in others], axis=0)
+        scale = values[..., i] / apart
+        f += scale * a * b * c
+        df += scale * (a * b + a * c + b * c)
+    return f, df
 
 
 def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed = "u", allowance: float = 0.0,
@@ -110,11 +127,17 @@ def sections(face: Face, tool: Tool, uv: ArrayLike, scallop: float, feed: Feed =
     rows = np.atleast_2d(np.asarray(uv, dtype=float))
     far = _REACH * tool.radius
     near = far if reach is None else min(reach, far)
-    count = max(int(np.ceil(_PLACES * (near / far) ** (1 / _CLOSER))), _FEWEST)
-    places = near * (np.arange(1, count + 1) / count) ** _CLOSER
-    at, up = section_points(face, section_parameters(face, rows, np.concatenate([places, -places]), feed))
-    lifted = (at + (scallop + allowance) * up).reshape(len(rows), 2, count, 3)
-    point, normal = face.evaluate(rows).point, contact_frame(face, rows, feed).normal
+    wanted = np.ceil(_PLACES * (near / far) ** (1 / _CLOSER))
+    number = max(int(wanted), _FEWEST)
+    share = np.arange(1, number + 1) / number
+    places = near * share ** _CLOSER
+    to_both_sides = np.concatenate([places, -places])
+    parameters = section_parameters(face, rows, to_both_sides, feed)
+    at, up = section_points(face, parameters)
+    lifted = at + (scallop + allowance) * up
+    lifted = lifted.reshape(len(rows), 2, number, 3)
+    point = face.evaluate(rows).point
+    normal = contact_frame(face, rows, feed).normal
     return Sections(point, normal, places, lifted, tool, scallop, allowance)
 
 
@@ -129,21 +152,34 @@ def section_parameters(face: Face, uv: ArrayLike, offsets: ArrayLike, feed: Feed
         Distances from the contact to the left in the tangent plane, mm.
     feed : "u", "v" or (3,) or (n, 3) array_like
     """
-    frame, rows = contact_frame(face, uv, feed), np.atleast_2d(np.asarray(uv, dtype=float))
+    frame = contact_frame(face, uv, feed)
+    rows = np.atleast_2d(np.asarray(uv, dtype=float))
     away = np.asarray(offsets, dtype=float)
-    feeds, lefts, origin, at = (np.repeat(each, len(away), axis=0) for each in
-                                (frame.feed, frame.left, face.evaluate(rows).point, rows))
+    number = len(away)
+    feeds = np.repeat(frame.feed, number, axis=0)
+    lefts = np.repeat(frame.left, number, axis=0)
+    origin = np.repeat(face.evaluate(rows).point, number, axis=0)
+    at = np.repeat(rows, number, axis=0)
     across = np.tile(away, len(rows))
     for _ in range(_SECTION_STEPS):
         d = face.evaluate(at)
-        miss_f, miss_k = dot(d.point - origin, feeds), dot(d.point - origin, lefts) - across
-        uf, vf, uk, vk = dot(d.su, feeds), dot(d.sv, feeds), dot(d.su, lefts), dot(d.sv, lefts)
+        way = d.point - origin
+        miss_f = dot(way, feeds)
+        miss_k = dot(way, lefts) - across
+        uf = dot(d.su, feeds)
+        vf = dot(d.sv, feeds)
+        uk = dot(d.su, lefts)
+        vk = dot(d.sv, lefts)
         det = uf * vk - vf * uk
         det = np.where(np.abs(det) > 1e-12, det, 1e-12)
-        at = at - np.stack([vk * miss_f - vf * miss_k, uf * miss_k - uk * miss_f], axis=1) / det[:, None]
-        if max(np.abs(miss_f).max(initial=0.0), np.abs(miss_k).max(initial=0.0)) < _CLOSE:
+        step_u = vk * miss_f - vf * miss_k
+        step_v = uf * miss_k - uk * miss_f
+        at = at - np.stack([step_u, step_v], axis=1) / det[:, None]
+        worst_f = np.abs(miss_f).max(initial=0.0)
+        worst_k = np.abs(miss_k).max(initial=0.0)
+        if max(worst_f, worst_k) < _CLOSE:
             break
-    return np.asarray(at.reshape(len(rows), len(away), 2))
+    return np.asarray(at.reshape(len(rows), number, 2))
 
 
 def section_points(face: Face, parameters: Array) -> tuple[Array, Array]:
