@@ -72,21 +72,31 @@ def trouble_between(mounting: Mounting, before: Stop, after: Stop, around: Machi
     tilted spindle one straight motion leads from the retracted place to the first point.  So do the programs that
     `toolaxis.post` writes.
     """
-    start, end = _linear(mounting, before), _linear(mounting, after)
+    start = _linear(mounting, before)
+    end = _linear(mounting, after)
     top = float(mounting.machine.linear[2].high)
-    up, over = np.append(start[:2], top), np.append(end[:2], top)
+    up = np.append(start[:2], top)
+    over = np.append(end[:2], top)
     if _is_tilted(mounting.machine, after):
-        ways = segments(np.array([up, end]))
+        way_down = segments(np.array([up, end]))
     else:
-        ways = segments(np.array([up, over, end]))
-        rectangle = np.zeros((3, 3))
-        rectangle[[0, 1], [0, 1]] = (over - up)[:2] / 2
-        ways.spread[0] = rectangle
-    for name, stop, way in ((RETRACT, before, segments(np.array([start, up]))), ("on the approach", after, ways)):
-        found = meeting_on(mounting, stop.rotary, way, around)
-        if found is not None and found.distance < around.required:
-            return f"{name} {words(mounting, stop.rotary, found, around.required)}"
-    return turning(mounting, up, (before.rotary, after.rotary), around)
+        way_down = segments(np.array([up, over, end]))
+        # X and Y go over in any way: all of the rectangle between the two places is swept.
+        half_x, half_y, _ = (over - up) / 2
+        way_down.spread[0] = np.diag([half_x, half_y, 0.0])
+    way_up = segments(np.array([start, up]))
+    found = _trouble_on(mounting, RETRACT, before, way_up, around)
+    if not found:
+        found = _trouble_on(mounting, "on the approach", after, way_down, around)
+    return found or turning(mounting, up, (before.rotary, after.rotary), around)
+
+
+def _trouble_on(mounting: Mounting, name: str, stop: Stop, way: ConvexBodies, around: MachineSurroundings) -> str:
+    """What comes too near on a way of the linear axes, in words; empty where nothing does."""
+    found = meeting_on(mounting, stop.rotary, way, around)
+    if found is None or found.distance >= around.required:
+        return ""
+    return f"{name} {words(mounting, stop.rotary, found, around.required)}"
 
 
 def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: MachineSurroundings) -> tuple[str, str]:
@@ -105,28 +115,34 @@ def trouble_at_the_ends(mounting: Mounting, first: Stop, last: Stop, around: Mac
     Where a program starts is not known: with a tilted spindle, which goes to the first point in one straight line from
     there, nothing is said of the approach.
     """
-    told = []
-    for name, stop in (("on the approach", first), (RETRACT, last)):
-        at = _linear(mounting, stop)
-        found = None
-        if stop is last or not _is_tilted(mounting.machine, stop):
-            above = np.append(at[:2], float(mounting.machine.linear[2].high))
-            found = meeting_on(mounting, stop.rotary, segments(np.array([above, at])), around)
-        near = found is not None and found.distance < around.required
-        told.append(f"{name} {words(mounting, stop.rotary, found, around.required)}" if near and found else "")
-    return told[0], told[1]
+    approach = ""
+    if first is last or not _is_tilted(mounting.machine, first):
+        approach = _trouble_above(mounting, "on the approach", first, around)
+    return approach, _trouble_above(mounting, RETRACT, last, around)
+
+
+def _trouble_above(mounting: Mounting, name: str, stop: Stop, around: MachineSurroundings) -> str:
+    """What comes too near on the way between a stop and the end of Z's travel, in words; empty where nothing does."""
+    at = _linear(mounting, stop)
+    top = float(mounting.machine.linear[2].high)
+    above = np.append(at[:2], top)
+    return _trouble_on(mounting, name, stop, segments(np.array([above, at])), around)
 
 
 def _linear(mounting: Mounting, stop: Stop) -> Array:
     """Linear coordinates at a stop, (3,) mm."""
-    return np.asarray(linear_coordinates(mounting.machine, stop.tip, stop.rotary, float(mounting.tool_length or 0.0),
-                                         mounting.table_from_part)[0])
+    length = float(mounting.tool_length or 0.0)
+    rows = linear_coordinates(mounting.machine, stop.tip, stop.rotary, length, mounting.table_from_part)
+    return np.asarray(rows[0])
 
 
 def _is_tilted(machine: Machine, stop: Stop) -> bool:
     """Whether the spindle leans away from Z at a stop."""
-    head = np.concatenate([np.zeros(len(machine.table)), stop.rotary[len(machine.table):]])
-    return float(angle_between(tool_axes(machine, head)[0], np.array([0.0, 0.0, 1.0]))) > _TILTED
+    of_table = len(machine.table)
+    head_alone = np.concatenate([np.zeros(of_table), stop.rotary[of_table:]])
+    spindle = tool_axes(machine, head_alone)[0]
+    upright = np.array([0.0, 0.0, 1.0])
+    return float(angle_between(spindle, upright)) > _TILTED
 
 
 def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], around: MachineSurroundings) -> str:
@@ -141,20 +157,25 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
         Rotary angles, rad.
     around : MachineSurroundings
     """
+    machine = mounting.machine
     one, other = (np.asarray(end, dtype=float) for end in ends)
-    low, high = np.minimum(one, other)[None], np.maximum(one, other)[None]
+    low = np.minimum(one, other)[None]
+    high = np.maximum(one, other)[None]
     pairs = _pairs(mounting, around, at)
-    weight = sum((np.array([_reaches(mounting.machine, solid) for solid in pair]).sum(axis=0) for pair in pairs),
-                 np.zeros(len(one)))
+    reaches = [_reaches(machine, mover) + _reaches(machine, still) for mover, still in pairs]
+    weight = sum(reaches, np.zeros(len(one)))
     looked = 0
     while len(low):
         looked += len(low)
-        middle, half = (low + high) / 2, (high - low) / 2
+        middle = (low + high) / 2
+        half = (high - low) / 2
         proven = np.ones(len(low), dtype=bool)
-        for mover, still in pairs:
-            swing = half @ (_reaches(mounting.machine, mover) + _reaches(mounting.machine, still))
-            gap = separation([_solid_at(mounting.machine, mover, middle)], [_solid_at(mounting.machine, still, middle)],
-                             around.required + float(swing.max()))
+        for (mover, still), reach in zip(pairs, reaches, strict=True):
+            swing = half @ reach
+            bodies = _solid_at(machine, mover, middle)
+            others = _solid_at(machine, still, middle)
+            enough = around.required + float(swing.max())
+            gap = separation([bodies], [others], enough)
             row = int(np.argmin(gap))
             if gap[row] < around.required:
                 found = CollisionPoint(mover.name, still.name, float(gap[row]), 0)
@@ -162,15 +183,24 @@ def turning(mounting: Mounting, at: Array, ends: tuple[ArrayLike, ArrayLike], ar
             if looked > _MOST:
                 return f"while the axes turn the {mover.name} is not proven to keep clear of the {still.name}"
             proven &= gap - swing >= around.required
-        low, high = low[~proven], high[~proven]
+        low = low[~proven]
+        high = high[~proven]
         if len(low):
-            axis = np.argmax((high - low) * (weight + 1e-9), axis=1)
-            rows = np.arange(len(low))
-            cut = (low[rows, axis] + high[rows, axis]) / 2
-            low, high = np.concatenate([low, low]), np.concatenate([high, high])
-            high[rows, axis] = cut
-            low[rows + len(rows), axis] = cut
+            low, high = _halve(low, high, weight)
     return ""
+
+
+def _halve(low: Array, high: Array, weight: Array) -> tuple[Array, Array]:
+    """Boxes of angles cut in two across the axis that swings things the farthest."""
+    axis = np.argmax((high - low) * (weight + 1e-9), axis=1)
+    number = len(low)
+    rows = np.arange(number)
+    cut = (low[rows, axis] + high[rows, axis]) / 2
+    low = np.concatenate([low, low])
+    high = np.concatenate([high, high])
+    high[rows, axis] = cut
+    low[rows + number, axis] = cut
+    return low, high
 
 
 def arms(mounting: Mounting, around: MachineSurroundings) -> Array:
@@ -181,8 +211,11 @@ def arms(mounting: Mounting, around: MachineSurroundings) -> Array:
     mounting : Mounting
     around : MachineSurroundings
     """
-    solids = [solid for pair in _pairs(mounting, around, np.zeros(3)) for solid in pair]
-    return np.asarray(np.max([_reaches(mounting.machine, solid) for solid in solids], axis=0, initial=0.0))
+    reaches = []
+    for mover, still in _pairs(mounting, around, np.zeros(3)):
+        reaches.append(_reaches(mounting.machine, mover))
+        reaches.append(_reaches(mounting.machine, still))
+    return np.asarray(np.max(reaches, axis=0, initial=0.0))
 
 
 def _pairs(mounting: Mounting, around: MachineSurroundings, at: Array) -> list[tuple[_Solid, _Solid]]:
@@ -191,27 +224,44 @@ def _pairs(mounting: Mounting, around: MachineSurroundings, at: Array) -> list[t
     carrier = machine.table[0].name if machine.table else BED
     place = placement(mounting.table_from_part)
     part = [_Solid("part", carrier, hull_of(cells).moved(place)) for cells in around.faces]
-    still = [_Solid(body.name, body.carried, body.convex) for body in machine.bodies if beside_part(machine, body)]
-    movers = [*_tool(mounting, around, at),
-              *(_Solid(one.name, one.carried, one.convex, machine.directions @ axes_carrying(machine, one.carried) @ at)
-                for one in machine.bodies if not beside_part(machine, one))]
+    still = []
+    movers = _tool(mounting, around, at)
+    for body in machine.bodies:
+        if beside_part(machine, body):
+            still.append(_Solid(body.name, body.carried, body.convex))
+        else:
+            shift = machine.directions @ axes_carrying(machine, body.carried) @ at
+            movers.append(_Solid(body.name, body.carried, body.convex, shift))
     first = machine.linear[0].name
-    pairs = [(mover, other) for mover in movers for other in (*still, *part)
-             if not (other.carried == BED and mover.carried == first)]
-    return pairs + [(other, one) for other in still if other.carried != carrier for one in part]
+    pairs = []
+    for mover in movers:
+        for other in (*still, *part):
+            # What the first axis carries slides over the bed: they always touch.
+            if not (other.carried == BED and mover.carried == first):
+                pairs.append((mover, other))
+    for other in still:
+        if other.carried != carrier:
+            pairs += [(other, one) for one in part]
+    return pairs
 
 
 def _tool(mounting: Mounting, around: MachineSurroundings, at: Array) -> list[_Solid]:
     """The tool with the linear axes where they are, rotary ones at zero."""
-    machine, axis = mounting.machine, np.asarray(mounting.machine.spindle)
+    machine = mounting.machine
+    axis = np.asarray(machine.spindle)
+    length = float(mounting.tool_length or 0.0)
     frame = np.eye(4)
     frame[:3, :3] = np.stack([*perpendicular(axis), axis], axis=1)
-    frame[:3, 3] = np.asarray(machine.gauge) - float(mounting.tool_length or 0.0) * axis
+    frame[:3, 3] = np.asarray(machine.gauge) - length * axis
     rows = solid_pieces(around.tool.profile, around.tool.outlines)
     pieces = convex_pieces(rows).moved(frame)
-    carried = machine.head[-1].name if machine.head else machine.linear[2].name
-    return [_Solid(COMPONENTS[int(row[7])], carried, pieces.rows(np.array([k])), machine.directions @ at)
-            for k, row in enumerate(rows)]
+    carrier = machine.head[-1] if machine.head else machine.linear[2]
+    shift = machine.directions @ at
+    solids = []
+    for k, row in enumerate(rows):
+        name = COMPONENTS[int(row[7])]
+        solids.append(_Solid(name, carrier.name, pieces.rows(np.array([k])), shift))
+    return solids
 
 
 def _solid_at(machine: Machine, solid: _Solid, rotary: Array) -> ConvexBodies:
@@ -223,21 +273,27 @@ def _solid_at(machine: Machine, solid: _Solid, rotary: Array) -> ConvexBodies:
 
 def _axes(machine: Machine, carried: str) -> list[tuple[int, RotaryAxis]]:
     """The rotary axes that turn what an axis carries, with their numbers, the one next to it first."""
-    table, head = [axis.name for axis in machine.table], [axis.name for axis in machine.head]
+    table = [axis.name for axis in machine.table]
+    head = [axis.name for axis in machine.head]
     if carried in table:
-        return [(k, machine.table[k]) for k in range(table.index(carried), len(table))]
+        outwards = range(table.index(carried), len(table))
+        return [(k, machine.table[k]) for k in outwards]
     if carried in head:
-        return [(len(table) + k, machine.head[k]) for k in reversed(range(head.index(carried) + 1))]
+        inwards = reversed(range(head.index(carried) + 1))
+        return [(len(table) + k, machine.head[k]) for k in inwards]
     return []
 
 
 def _reaches(machine: Machine, solid: _Solid) -> Array:
     """How far a solid reaches from each rotary axis that turns it, mm; 0 for the others, (m,)."""
-    reach, found = 0.0, np.zeros(len(machine.rotary))
+    reach = 0.0
+    found = np.zeros(len(machine.rotary))
     before: Array | None = None
     for number, axis in _axes(machine, solid.carried):
         if before is None:
-            reach = float(solid.shape._replace(centre=solid.shape.centre - axis.point).reach.max())
+            about_axis = solid.shape.centre - axis.point
+            around_axis = solid.shape._replace(centre=about_axis)
+            reach = float(around_axis.reach.max())
         else:
             reach += float(np.linalg.norm(before - axis.point))
         before = axis.point
@@ -253,21 +309,29 @@ def hull_of(cells: BoundingTree) -> ConvexBodies:
     ----------
     cells : BoundingTree
     """
-    shape, link = cells.shape, cells.link
-    fine = (link[:, 2] >= 0) & ((shape[:, 9] <= _COARSE) | (link[:, 0] < 0))
+    shape = cells.shape
+    link = cells.link
+    face_of_cell = link[:, 2]
+    is_leaf = link[:, 0] < 0
+    fine = (face_of_cell >= 0) & ((shape[:, 9] <= _COARSE) | is_leaf)
     parent = np.full(len(shape), -1)
     for column in (0, 1):
         there = link[:, column] >= 0
         parent[link[there, column]] = np.flatnonzero(there)
+    below_fine = fine[parent] & (parent >= 0)
     flat = np.array([face.kind == "plane" for face in cells.faces])
-    kept = shape[fine & ~(fine[parent] & (parent >= 0)) & ~flat[link[:, 2]]]
+    kept = shape[fine & ~below_fine & ~flat[face_of_cell]]
+    middle = kept[:, None, :3]
+    half_u = kept[:, None, 3:6]
+    half_v = kept[:, None, 6:9]
     signs = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
-    points = (kept[:, None, :3] + signs[:, :1] * kept[:, None, 3:6] + signs[:, 1:] * kept[:, None, 6:9]).reshape(-1, 3)
+    corners = middle + signs[:, :1] * half_u + signs[:, 1:] * half_v
     planes = [face.evaluate(loop).point for face in cells.faces if face.kind == "plane" for loop in face.outline]
-    points = np.concatenate([points, *planes])
+    points = np.concatenate([corners.reshape(-1, 3), *planes])
     try:
         points = points[ConvexHull(points).vertices]
     except QhullError:  # flat: the corners of its box
-        low, high = points.min(axis=0), points.max(axis=0)
-        points = np.array(np.meshgrid(*np.stack([low, high], axis=1))).reshape(3, -1).T
-    return hull(points, float(kept[:, 9].max(initial=_LOOPS)) + max(face.tolerance for face in cells.faces))
+        sides = np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+        points = np.array(np.meshgrid(*sides)).reshape(3, -1).T
+    margin = float(kept[:, 9].max(initial=_LOOPS))
+    return hull(points, margin + max(face.tolerance for face in cells.faces))

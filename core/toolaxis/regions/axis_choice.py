@@ -50,22 +50,25 @@ def reckon_axes(job: FaceProblem, scene: ReachScene, axes: Array, own: int, rate
         The quickest first; that one alone where the screening does not see what it reaches.
     """
     worth = job.worth
-    face, tool = worth.face, worth.tool
+    face = worth.face
+    tool = worth.tool
     size = min(_SIZE * tool.radius, _ACROSS * mean_width(face))
-    cells = FaceCells.sized(face, max(size, (face.area / _CELLS) ** 0.5))
+    least_size = (face.area / _CELLS) ** 0.5
+    cells = FaceCells.sized(face, max(size, least_size))
     strip = widths(cells, [tool], axes, worth.scallop, worth.allowance, worth.greatest_step_over)[0]
     screen = ReachScreen(cells, tighten_scene(job, scene))
     is_reached = screen.screen([tool], axes, (strip > 0)[None])[0]
     area = is_reached @ cells.area
     if not area[own] > 0:
         return (AxisTime(own, 0.0),)
-    lengths = np.where(is_reached, cells.area / np.where(is_reached, strip, 1.0), 0.0)
+    length = cells.area / np.where(is_reached, strip, 1.0)
+    lengths = np.where(is_reached, length, 0.0)
     seconds = lengths.sum(axis=1) / rate
     reaches_enough = area >= (1 - _MISSED) * area[own]
     is_quick = seconds <= seconds[own] + move
     good = np.flatnonzero(reaches_enough & is_quick)
-    quickest_first = good[np.argsort(seconds[good], kind="stable")]
-    return tuple(AxisTime(int(k), float(seconds[k])) for k in quickest_first)
+    order = np.argsort(seconds[good], kind="stable")
+    return tuple(AxisTime(int(k), float(seconds[k])) for k in good[order])
 
 
 def choose_axes(options: Sequence[Sequence[AxisTime]], used: Collection[int], move: float) -> tuple[int, ...]:
@@ -92,29 +95,34 @@ def choose_axes(options: Sequence[Sequence[AxisTime]], used: Collection[int], mo
     if not options:
         return ()
     axes = sorted({one.axis for some in options for one in some})
-    place = {axis: k for k, axis in enumerate(axes)}
+    column = {axis: k for k, axis in enumerate(axes)}
+    every = np.arange(len(axes))
     seconds = np.full((len(options), len(axes)), _NEVER)
     for row, some in enumerate(options):
         for one in some:
-            seconds[row, place[one.axis]] = one.seconds
+            seconds[row, column[one.axis]] = one.seconds
     price = np.array([0.0 if axis in used else move for axis in axes])
-    quickest = np.isin(np.arange(len(axes)), seconds.argmin(axis=1))
-    most = np.arange(len(axes)) == int((seconds.sum(axis=0) + price).argmin())
-    held = min((_improve_choice(seconds, price, begin) for begin in (quickest, most)),
-               key=lambda one: _cost(seconds, price, one))
-    return tuple(axes[k] for k in np.where(held, seconds, np.inf).argmin(axis=1))
+    cheapest = int((seconds.sum(axis=0) + price).argmin())
+    quickest = np.isin(every, seconds.argmin(axis=1))
+    tried = [_improve_choice(seconds, price, begin) for begin in (quickest, every == cheapest)]
+    held = min(tried, key=lambda one: _cost(seconds, price, one))
+    chosen = np.where(held, seconds, np.inf).argmin(axis=1)
+    return tuple(axes[k] for k in chosen)
 
 
 def _cost(seconds: Array, price: Array, held: Bools) -> float:
     """Time of all surfaces with the axes that are held, index moves included, s."""
-    return float(_least(seconds, held).sum() + price[held].sum())
+    cutting = _least(seconds, held).sum()
+    moves = price[held].sum()
+    return float(cutting + moves)
 
 
 def _improve_choice(seconds: Array, price: Array, held: Bools) -> Bools:
     """Axes that are held, (k,), better by single steps until none of these saves time."""
     while (step := _best_step(seconds, price, held)) is not None:
+        changed = [axis for axis in step if axis is not None]
         held = held.copy()
-        held[[axis for axis in step if axis is not None]] ^= True
+        held[changed] ^= True
     return held
 
 
@@ -122,23 +130,29 @@ def _best_step(seconds: Array, price: Array, held: Bools) -> tuple[int | None, i
     """Which axis to drop and which to add, one of them or both, to save most time; None where no step saves any."""
     dropped = [int(axis) for axis in np.flatnonzero(held)]
     # Rows: no axis is dropped, or each of those that are held.
-    left = np.vstack([_least(seconds, held), *(_least(seconds, _without(held, axis)) for axis in dropped)])
+    rest = [held, *(_without(held, axis) for axis in dropped)]
+    left = np.vstack([_least(seconds, one) for one in rest])
     unpaid = np.append(0.0, price[dropped])
+    price_to_add = np.where(held, np.inf, price)
     # Columns: each axis is added, or none.
     cost = np.empty((len(left), len(held) + 1))
     for row, times in enumerate(left):
-        cost[row, :-1] = np.minimum(times[:, None], seconds).sum(axis=0) + np.where(held, np.inf, price)
+        with_one_more = np.minimum(times[:, None], seconds)
+        cost[row, :-1] = with_one_more.sum(axis=0) + price_to_add
         cost[row, -1] = times.sum()
     cost -= unpaid[:, None]
     if cost.min() >= cost[0, -1] - _LEAST_SAVED:
         return None
     best, added = divmod(int(cost.argmin()), len(held) + 1)
-    return dropped[best - 1] if best else None, added if added < len(held) else None
+    drop = dropped[best - 1] if best else None
+    add = added if added < len(held) else None
+    return drop, add
 
 
 def _without(held: Bools, axis: int) -> Bools:
     """Axes that are held, one of them dropped."""
-    return np.asarray(held & (np.arange(len(held)) != axis))
+    others = np.arange(len(held)) != axis
+    return np.asarray(held & others)
 
 
 def _least(seconds: Array, held: Bools) -> Array:

@@ -72,22 +72,28 @@ class MachineModel:
     @cached_property
     def tool(self) -> tuple[RigidBody, ...]:
         """Cutter, shank and holder in the spindle."""
-        spindle = np.asarray(self.machine.spindle)
-        tip = np.asarray(self.machine.gauge) - self.tool_length * spindle
-        last = self.machine.head[-1].name if self.machine.head else self.machine.linear[-1].name
-        return tuple(revolve_rigid_body(name, last, line, tip, spindle)
-                     for name, line in {"cutter": cutter_line(self.profile), **self.outlines}.items())
+        machine = self.machine
+        spindle = np.asarray(machine.spindle)
+        tip = np.asarray(machine.gauge) - self.tool_length * spindle
+        carrier = machine.head[-1] if machine.head else machine.linear[-1]
+        lines = {"cutter": cutter_line(self.profile), **self.outlines}
+        return tuple(revolve_rigid_body(name, carrier.name, line, tip, spindle) for name, line in lines.items())
 
     @cached_property
     def part(self) -> RigidBody:
         """The faces of the part on the table."""
-        found, labels = [np.empty((0, 3))], []
+        found = [np.empty((0, 3))]
+        labels: list[str] = []
+        apart = 0.0
         for face in self.faces:
-            found.append(face.evaluate(face.grid(_GRID, _GRID)).point)
-            labels += [f"face {face.label}"] * len(found[-1])
-        apart = max((float(np.sqrt(face.area)) / _GRID for face in self.faces), default=0.0)
-        points = np.concatenate(found) @ self.place[:3, :3].T + self.place[:3, 3]
-        return RigidBody("part", self._carrier, points, apart, None, tuple(labels))
+            points = face.evaluate(face.grid(_GRID, _GRID)).point
+            found.append(points)
+            labels += [f"face {face.label}"] * len(points)
+            apart = max(apart, float(np.sqrt(face.area)) / _GRID)
+        turn = self.place[:3, :3]
+        shift = self.place[:3, 3]
+        on_table = np.concatenate(found) @ turn.T + shift
+        return RigidBody("part", self._carrier, on_table, apart, None, tuple(labels))
 
     @property
     def _carrier(self) -> str:
@@ -106,18 +112,20 @@ class MachineModel:
     @cached_property
     def reach(self) -> tuple[float, float]:
         """How far anything on the table's and on the spindle's side is from the axes that turn it, at most, mm."""
-        found = []
+        of_table = self._reach_of(self.machine.table, on_table=True)
+        of_head = self._reach_of(self.machine.head, on_table=False)
+        return of_table, of_head
+
+    def _reach_of(self, axes: Sequence[RotaryAxis], on_table: bool) -> float:
+        """How far anything on one side is from the rotary axes there, at most, mm."""
         everything = (*self.bodies, *self.tool, self.part)
-        for axes, side in ((self.machine.table, True), (self.machine.head, False)):
-            centres = [np.asarray(axis.point) for axis in axes]
-            points = [thing.points for thing in everything if len(thing.points) and self.beside_part(thing) is side]
-            if not centres or not points:
-                found.append(0.0)
-                continue
-            between = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(centres))
-            far = max(float(np.linalg.norm(rows - centre, axis=1).max()) for rows in points for centre in centres)
-            found.append(far + between)
-        return found[0], found[1]
+        centres = [np.asarray(axis.point) for axis in axes]
+        points = [thing.points for thing in everything if len(thing.points) and self.beside_part(thing) is on_table]
+        if not centres or not points:
+            return 0.0
+        between = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(centres))
+        far = max(float(np.linalg.norm(rows - centre, axis=1).max()) for rows in points for centre in centres)
+        return far + between
 
     def between(self, before: Array | None, after: Array) -> Array | None:
         """Joint coordinates of an index move, (n, 3 + m); None where there is no top to go to, or no known way.
@@ -132,17 +140,20 @@ class MachineModel:
             Where the next one begins.
         """
         machine = self.machine
-        upright = np.abs(machine.directions - np.eye(3)).max() <= _UPRIGHT
-        if not (upright and np.isfinite(machine.linear[2].high)):
+        top = machine.linear[2].high
+        off_axes = np.abs(machine.directions - np.eye(3)).max()
+        if off_axes > _UPRIGHT or not np.isfinite(top):
             return None
         turn, _ = self.placed(self.tool[0], after)
-        tilted = float(np.linalg.norm(np.cross(turn @ np.asarray(machine.spindle), [0.0, 0.0, 1.0]))) > _TILTED
+        spindle = turn @ np.asarray(machine.spindle)
+        lean = float(np.linalg.norm(np.cross(spindle, [0.0, 0.0, 1.0])))
+        tilted = lean > _TILTED
         above = after.copy()
-        above[2] = machine.linear[2].high
+        above[2] = top
         if before is None:
             return None if tilted else np.array([above, after])
         rows = np.array([before, before, before, above, after])
-        rows[1:3, 2] = machine.linear[2].high
+        rows[1:3, 2] = top
         rows[2, 3:] = after[3:]
         return rows[[0, 1, 2, 4]] if tilted else rows
 
@@ -167,27 +178,31 @@ class MachineModel:
         arrival = np.arange(len(tips))
         for _ in range(_HALVINGS):
             rows = self._nearest(tips, axes, rotary)
-            far = np.abs(np.diff(rows[:, 3:], axis=0)).max(axis=1, initial=0.0) > _WIDE
-            far &= np.linalg.norm(np.diff(axes, axis=0), axis=1) > _FINE
+            turns = np.abs(np.diff(rows[:, 3:], axis=0)).max(axis=1, initial=0.0)
+            leans = np.linalg.norm(np.diff(axes, axis=0), axis=1)
+            far = (turns > _WIDE) & (leans > _FINE)
             if not far.any():
                 break
             at = np.flatnonzero(far) + 1
-            tips = np.insert(tips, at, (tips[at - 1] + tips[at]) / 2, axis=0)
+            middle_tip = (tips[at - 1] + tips[at]) / 2
             middle = axes[at - 1] + axes[at]
-            axes = np.insert(axes, at, middle / np.linalg.norm(middle, axis=1)[:, None], axis=0)
+            middle_axis = middle / np.linalg.norm(middle, axis=1)[:, None]
+            tips = np.insert(tips, at, middle_tip, axis=0)
+            axes = np.insert(axes, at, middle_axis, axis=0)
             arrival = np.insert(arrival, at, arrival[at])
         return rows, arrival
 
     def _nearest(self, tips: Array, axes: Array, rotary: Sequence[float]) -> Array:
         """Joint coordinates at locations, at each of them the solution that is nearest to the one before."""
-        found = inverse(self.machine, tips, axes, self.tool_length, self.place, near=np.asarray(rotary, dtype=float))
-        rows = np.empty((len(tips), found.joints.shape[2]))
         stand = np.asarray(rotary, dtype=float)
+        found = inverse(self.machine, tips, axes, self.tool_length, self.place, near=stand)
+        rows = np.empty((len(tips), found.joints.shape[2]))
         for k, branches in enumerate(found.joints):
             turn = np.mod(branches[:, 3:] - stand + np.pi, 2 * np.pi) - np.pi
             best = int(np.argmin(np.abs(turn).sum(axis=1)))
             stand = stand + turn[best]
-            rows[k, :3], rows[k, 3:] = branches[best, :3], stand
+            rows[k, :3] = branches[best, :3]
+            rows[k, 3:] = stand
         return rows
 
     def placed(self, thing: RigidBody, joints: Array) -> tuple[Array, Array]:
@@ -198,22 +213,25 @@ class MachineModel:
         thing : RigidBody
         joints : (3 + m,) array
         """
-        table, head = list(self.machine.table), list(self.machine.head)
-        names = [axis.name for axis in table], [axis.name for axis in head]
-        turn, shift = np.eye(3), np.zeros(3)
-        if thing.carried in names[0]:
-            for k in range(names[0].index(thing.carried), len(table)):  # from the part to the bed
-                turn, shift = _then(turn, shift, table[k], -joints[3 + k])
+        machine = self.machine
+        table = [axis.name for axis in machine.table]
+        head = [axis.name for axis in machine.head]
+        turn = np.eye(3)
+        shift = np.zeros(3)
+        if thing.carried in table:
+            for k in range(table.index(thing.carried), len(table)):  # from the part to the bed
+                turn, shift = _then(turn, shift, machine.table[k], -joints[3 + k])
             return turn, shift
         if thing.carried == BED:
             return turn, shift
-        moved = len(self.machine.linear)
-        if thing.carried in names[1]:
-            for k in reversed(range(names[1].index(thing.carried) + 1)):  # from the tool to the linear axes
-                turn, shift = _then(turn, shift, head[k], joints[3 + len(table) + k])
+        moved = len(machine.linear)
+        if thing.carried in head:
+            for k in reversed(range(head.index(thing.carried) + 1)):  # from the tool to the linear axes
+                turn, shift = _then(turn, shift, machine.head[k], joints[3 + len(table) + k])
         else:
-            moved = [axis.name for axis in self.machine.linear].index(thing.carried) + 1
-        return turn, shift + self.machine.directions[:, :moved] @ joints[:moved]
+            linear = [axis.name for axis in machine.linear]
+            moved = linear.index(thing.carried) + 1
+        return turn, shift + machine.directions[:, :moved] @ joints[:moved]
 
     @cached_property
     def judged(self) -> bool:
@@ -230,14 +248,20 @@ class MachineModel:
         """What else is held apart: points of the first against the second."""
         head = [one for one in self.bodies if not self.beside_part(one)]
         table = [one for one in self.bodies if self.beside_part(one)]
-        first, part = self.machine.linear[0].name, [self.part] if len(self.part.points) else []
+        first = self.machine.linear[0].name
+        part = [self.part] if len(self.part.points) else []
         found = []
         for one in head:
             against = [other for other in table if not (other.carried == BED and one.carried == first)]
-            found += [(one, other) for other in against] + [(other, one) for other in (*against, *part)]
+            found += [(one, other) for other in against]
+            found += [(other, one) for other in (*against, *part)]
         for one in self.tool:
-            found += [(one, other) for other in table] + [(other, one) for other in table]
-        return found + [(some, one) for one in table if one.carried != self._carrier for some in part]
+            found += [(one, other) for other in table]
+            found += [(other, one) for other in table]
+        for one in table:
+            if one.carried != self._carrier:
+                found += [(some, one) for some in part]
+        return found
 
 
 def least_room(rig: MachineModel, joints: Array, needed: float, pairs: Sequence[tuple[RigidBody, RigidBody]],
@@ -262,47 +286,63 @@ def least_room(rig: MachineModel, joints: Array, needed: float, pairs: Sequence[
         at which the motion arrives.  Of flat skins it is exact where a corner comes near; elsewhere it may be up to its
         `uncertainty` too great.
     """
-    steps = np.abs(np.diff(joints, axis=0))
-    table = len(rig.machine.table)
-    turns = steps[:, 3:3 + table].sum(axis=1) * rig.reach[0] + steps[:, 3 + table:].sum(axis=1) * rig.reach[1]
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(joints[:, :3], axis=0), axis=1) + turns)])
+    way = _way_of_anything(rig, joints)
+    whole = way[-1]
+    last_row = len(joints) - 1
     worst = Clearance("", FAR, "", (0.0, 0.0, 0.0), -1, 0.0)
     for number, (cloud, body) in enumerate(pairs):
         progress.report("bodies of the machine", number, len(pairs))
         at = 0.0
-        while at <= way[-1]:
-            row = int(np.clip(np.searchsorted(way, at), 1, max(len(joints) - 1, 1)))
+        while at <= whole:
+            row = int(np.clip(np.searchsorted(way, at), 1, max(last_row, 1)))
             here = np.array([np.interp(at, way, column) for column in joints.T])
             distance, k, place = _apart(rig, cloud, body, here)
             if distance < worst.distance:
                 near = cloud.labels[k] if cloud.labels else cloud.name
-                one, other = (near, body.name) if not rig.beside_part(cloud) else (body.name, near)
-                point = (float(place[0]), float(place[1]), float(place[2]))
-                worst = Clearance(one, distance, other, point, min(row, len(joints) - 1), cloud.spacing)
-            if at == way[-1]:
+                one, other = (body.name, near) if rig.beside_part(cloud) else (near, body.name)
+                x, y, z = (float(value) for value in place)
+                worst = Clearance(one, distance, other, (x, y, z), min(row, last_row), cloud.spacing)
+            if at == whole:
                 break
-            at = min(at + max(distance - needed, _STEP), way[-1])
+            at = min(at + max(distance - needed, _STEP), whole)
     return worst
+
+
+def _way_of_anything(rig: MachineModel, joints: Array) -> Array:
+    """How far anything in a machine goes at most up to each row of joints, (n,) mm."""
+    steps = np.abs(np.diff(joints, axis=0))
+    head = 3 + len(rig.machine.table)
+    of_table, of_head = rig.reach
+    turns = steps[:, 3:head].sum(axis=1) * of_table + steps[:, head:].sum(axis=1) * of_head
+    straight = np.linalg.norm(np.diff(joints[:, :3], axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(straight + turns)])
 
 
 def _apart(rig: MachineModel, cloud: RigidBody, body: RigidBody, joints: Array) -> tuple[float, int, Array]:
     """The least distance of points from a body, mm, which one has it, and where that is in the part's frame."""
     assert body.inside is not None
-    (turn, shift), (other, aside) = rig.placed(cloud, joints), rig.placed(body, joints)
-    least, k, place = np.inf, 0, np.zeros(3)
+    turn, shift = rig.placed(cloud, joints)
+    other, aside = rig.placed(body, joints)
+    least = np.inf
+    k = 0
+    place = np.zeros(3)
     for first in range(0, len(cloud.points), _TILE):
         there = cloud.points[first:first + _TILE] @ turn.T + shift
         found = body.inside((there - aside) @ other)
         i = int(np.argmin(found))
         if found[i] < least:
-            least, k, place = float(found[i]), first + i, there[i]
+            least = float(found[i])
+            k = first + i
+            place = there[i]
     turned, moved = rig.placed(rig.part, joints)
     on_table = (place - moved) @ turned
-    return least, k, np.asarray((on_table - rig.place[:3, 3]) @ rig.place[:3, :3])
+    in_part = (on_table - rig.place[:3, 3]) @ rig.place[:3, :3]
+    return least, k, np.asarray(in_part)
 
 
 def _then(turn: Array, shift: Array, axis: RotaryAxis, angle: float) -> tuple[Array, Array]:
     """A rigid motion followed by a turn about an axis."""
-    more = Rotation.from_rotvec(angle * np.asarray(axis.direction)).as_matrix()
+    vector = angle * np.asarray(axis.direction)
+    more = Rotation.from_rotvec(vector).as_matrix()
     centre = np.asarray(axis.point)
     return more @ turn, more @ (shift - centre) + centre

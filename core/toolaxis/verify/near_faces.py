@@ -42,19 +42,26 @@ class SweptBoxes:
         top = float(solid[5])
         wide = max(float(solid[0] + solid[1]), float(solid[6]))
         self.frame = np.column_stack([*perpendicular(axes[0]), axes[0]])
-        tip, upper = tips @ self.frame, (tips + top * axes) @ self.frame
-        first = np.arange(0, max(len(tips) - 1, 1), _TOGETHER)
-        last = np.minimum(first + _TOGETHER, len(tips) - 1)  # where the next group begins
+        tip = tips @ self.frame
+        upper = (tips + top * axes) @ self.frame
+        number = len(tips) - 1
+        first = np.arange(0, max(number, 1), _TOGETHER)
+        last = np.minimum(first + _TOGETHER, number)  # where the next group begins
         # Within a motion the axis leaves the chord between its ends by no more than this.
-        half_chord = np.linalg.norm(np.diff(axes, axis=0), axis=1).max(initial=0.0) / 2
-        bulge = top * (1.0 - np.sqrt(max(1.0 - half_chord**2, 0.0)))
+        turns = np.linalg.norm(np.diff(axes, axis=0), axis=1)
+        half_chord = turns.max(initial=0.0) / 2
+        height = np.sqrt(max(1.0 - half_chord**2, 0.0))
+        bulge = top * (1.0 - height)
         # The sine of the angle to the first axis, at most: so much of its radius a disc across the axis rises by.
-        leans = min(np.linalg.norm(axes - axes[0], axis=1).max() + 2 * half_chord, 1.0)
+        off_first = np.linalg.norm(axes - axes[0], axis=1).max()
+        leans = min(off_first + 2 * half_chord, 1.0)
         room = np.array([wide, wide, wide * leans]) + bulge + _ROUNDING
         low = np.minimum(tip, upper)
         high = np.maximum(tip, upper)
-        self.low = np.minimum(np.minimum.reduceat(low, first), low[last]) - room
-        self.high = np.maximum(np.maximum.reduceat(high, first), high[last]) + room
+        lowest = np.minimum.reduceat(low, first)
+        highest = np.maximum.reduceat(high, first)
+        self.low = np.minimum(lowest, low[last]) - room
+        self.high = np.maximum(highest, high[last]) + room
 
     def may_come_to(self, face: Face, room: float) -> bool:
         """Whether the cutter may come nearer to a face than some room.
@@ -71,7 +78,8 @@ class SweptBoxes:
         seen = net @ self.frame
         low = seen.min(axis=0) - room
         high = seen.max(axis=0) + room
-        return bool(((low <= self.high) & (high >= self.low)).all(axis=1).any())
+        meets = (low <= self.high) & (high >= self.low)
+        return bool(meets.all(axis=1).any())
 
 
 def _net(face: Face) -> Array | None:
@@ -79,16 +87,26 @@ def _net(face: Face) -> Array | None:
 
     None where the face goes on beyond its surface, or a weight is not above zero.
     """
-    rows = []
-    low, high = np.array(face.bounds[::2]), np.array(face.bounds[1::2])
+    u0, u1, v0, v1 = face.bounds
     surface = face.surface
-    for k, knots in enumerate((surface.knots_u, surface.knots_v)):
-        degree = surface.degree[k]
-        count = len(knots) - degree - 1
-        if low[k] < knots[degree] or high[k] > knots[count]:
-            return None
-        first = int(np.searchsorted(knots[:count], low[k], side="right")) - 1 - degree
-        last = int(np.searchsorted(knots[:count], high[k], side="right"))
-        rows.append(slice(max(first, 0), max(last, first + degree + 1)))
-    net = surface.control[rows[0], rows[1]].reshape(-1, 4)
-    return net[:, :3] / net[:, 3:] if (net[:, 3] > 0).all() else None
+    degree_u, degree_v = surface.degree
+    some_u = _active(surface.knots_u, degree_u, u0, u1)
+    some_v = _active(surface.knots_v, degree_v, v0, v1)
+    if some_u is None or some_v is None:
+        return None
+    net = surface.control[some_u, some_v].reshape(-1, 4)
+    weight = net[:, 3:]
+    if not (weight > 0).all():
+        return None
+    return net[:, :3] / weight
+
+
+def _active(knots: Array, degree: int, low: float, high: float) -> slice | None:
+    """Control points that a range of the parameter depends on; None where it goes on beyond the knots."""
+    number = len(knots) - degree - 1
+    if low < knots[degree] or high > knots[number]:
+        return None
+    spans = knots[:number]
+    first = int(np.searchsorted(spans, low, side="right")) - 1 - degree
+    last = int(np.searchsorted(spans, high, side="right"))
+    return slice(max(first, 0), max(last, first + degree + 1))

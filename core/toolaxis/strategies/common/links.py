@@ -108,8 +108,10 @@ class MovingLinks:
         rho, z = np.concatenate([cutter, *self.tool.outlines.values()]).T
         most = float(np.max(angle_between(axes, self.up)))
         lean = np.linspace(0.0, most, 64)[:, None]
-        below = float((rho * np.sin(lean) - z * np.cos(lean)).max())
-        spread = (float(lean[-1, 0]) / 63) * float(np.hypot(rho, z).max())  # between the angles looked at
+        depth = rho * np.sin(lean) - z * np.cos(lean)
+        below = float(depth.max())
+        step = float(lean[-1, 0]) / 63
+        spread = step * float(np.hypot(rho, z).max())  # between the angles looked at
         return self.linking.height + max(below, 0.0) + spread
 
 
@@ -142,16 +144,21 @@ def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolP
         return ToolPath(empty, empty, empty, empty, np.empty(0, dtype=np.int8), np.zeros(1, dtype=np.int64))
     begins = [entry_points(one, one.axis[0], how.linking) for one in strokes]
     ends = [exit_points(one, one.axis[-1], how.linking) for one in strokes]
-    first, last = (np.array([one.axis[k] for one in strokes]) for k in (0, -1))
+    first = np.array([one.axis[0] for one in strokes])
+    last = np.array([one.axis[-1] for one in strokes])
     top = how.height(np.concatenate([first, last]))
-    over = _over((ends, begins), (last, first), how)
-    lay_lead_arcs((begins, ends), strokes, (~np.isfinite(over[:, 0]), first, last), how.linking)
-    for points, which, axes in ((begins, 0, first), (ends, -1, last)):
-        raise_link_ends(points, which, axes, how.linking, lambda tips, along: _lifts(tips, along, how.up, top))
+    over = _over(ends, begins, last, first, how)
+    stays = np.isfinite(over[:, 0])
+    lay_lead_arcs((begins, ends), strokes, (~stays, first, last), how.linking)
+
+    def lifts(tips: Array, along: Array) -> Array:
+        return _lifts(tips, along, how.up, top)
+
+    raise_link_ends(begins, 0, first, how.linking, lifts)
+    raise_link_ends(ends, -1, last, how.linking, lifts)
     down = _above(np.array([one[0] for one in begins]), first, how.up, top)
     up = _above(np.array([one[-1] for one in ends]), last, how.up, top)
-    _lower((up, down), (ends, begins), (last, first), how)
-    stays = np.isfinite(over[:, 0])
+    _lower(up, down, ends, begins, last, first, how)
     pieces = []
     for k, stroke in enumerate(strokes):
         entry = np.concatenate([down[k][None], begins[k]])
@@ -159,7 +166,8 @@ def join_moves(passes: list[list[MovingCuttingMove]], how: MovingLinks) -> ToolP
         kind = kinds_of(len(entry), len(stroke.tip), len(leaving))
         leaving_axes = np.tile(last[k], (len(leaving), 1))
         if stays[k]:  # the tool comes from the stroke before, low over the part, and not from above
-            entry, kind = entry[2:], kind[2:]
+            entry = entry[2:]
+            kind = kind[2:]
         if stays[k + 1]:
             leaving = np.concatenate([ends[k][:-1], over[k + 1:k + 2]])
             halfway = unit(last[k] + first[k + 1])
@@ -186,53 +194,70 @@ def _above(tips: Array, axes: Array, up: Array, height: float) -> Array:
         k = int(np.argmin(slope))
         raise InvalidInput(f"the axis {np.round(axes[k], 4).tolist()} at an end of a pass lies more than 84 deg from "
                            "the mean one: a retract along it does not leave the part")
-    return np.asarray(tips + _lifts(tips, axes, up, height)[:, None] * axes)
+    lifts = _lifts(tips, axes, up, height)
+    return np.asarray(tips + lifts[:, None] * axes)
 
 
 def _lifts(tips: Array, axes: Array, up: Array, height: float) -> Array:
     """How far tips are lifted along their axes to a height along `up`, (k,) mm; those that lead nowhere are refused
     where they are lifted."""
-    return np.asarray(np.maximum(height - tips @ up, 0.0) / np.maximum(axes @ up, _UPWARDS))
+    below = np.maximum(height - tips @ up, 0.0)
+    slope = np.maximum(axes @ up, _UPWARDS)
+    return np.asarray(below / slope)
 
 
-def _over(low: tuple[list[Array], list[Array]], axes: tuple[Array, Array], how: MovingLinks) -> Array:
+def _over(ends: list[Array], begins: list[Array], last: Array, first: Array, how: MovingLinks) -> Array:
     """Tips over which it goes straight to each stroke, and after the last one, (strokes + 1, 3); nan where it lifts."""
-    over = np.full((len(low[0]) + 1, 3), np.nan)
-    if how.clear is None or len(low[0]) < 2:
+    over = np.full((len(ends) + 1, 3), np.nan)
+    if how.clear is None or len(ends) < 2:
         return over
-    ends = np.array([near_end(one[::-1], axis, how.linking) for one, axis in zip(low[0], axes[0], strict=True)])[:-1]
-    begins = np.array([near_end(one, axis, how.linking) for one, axis in zip(low[1], axes[1], strict=True)])[1:]
-    before, after = axes[0][:-1], axes[1][1:]
-    far = np.linalg.norm(begins - ends, axis=1)
-    left = np.flatnonzero((far <= BESIDE) & (far > 0) & ((before * after).sum(axis=1) > 0))
+    starts = np.array([near_end(one[::-1], axis, how.linking) for one, axis in zip(ends, last, strict=True)])[:-1]
+    stops = np.array([near_end(one, axis, how.linking) for one, axis in zip(begins, first, strict=True)])[1:]
+    before = last[:-1]
+    after = first[1:]
+    far = np.linalg.norm(stops - starts, axis=1)
+    is_beside = (far <= BESIDE) & (far > 0)
+    left = np.flatnonzero(is_beside & ((before * after).sum(axis=1) > 0))
     middle = np.asarray(unit(before + after)) if len(left) else before
     for share in ROOFS:
-        some = (ends[left] + begins[left]) / 2 + (share * far[left])[:, None] * middle[left]
-        free = how.clear(ends[left], some, before[left], middle[left], LinkMotion.AT_FEED)
-        free &= how.clear(some, begins[left], middle[left], after[left], LinkMotion.AT_FEED)
-        over[left[free] + 1] = some[free]
+        start = starts[left]
+        stop = stops[left]
+        axis = middle[left]
+        height = share * far[left]
+        roof = (start + stop) / 2 + height[:, None] * axis
+        free = how.clear(start, roof, before[left], axis, LinkMotion.AT_FEED)
+        free &= how.clear(roof, stop, axis, after[left], LinkMotion.AT_FEED)
+        over[left[free] + 1] = roof[free]
         left = left[~free]
     return over
 
 
-def _lower(tops: tuple[Array, Array], low: tuple[list[Array], list[Array]], axes: tuple[Array, Array],
+def _lower(up: Array, down: Array, ends: list[Array], begins: list[Array], last: Array, first: Array,
            how: MovingLinks) -> None:
     """Replace the ends of links by lower ones where a crossing there is free."""
-    if how.clear is None or len(tops[0]) < 2:
+    if how.clear is None or len(up) < 2:
         return
-    up, down = tops
-    starts, stops = np.array([one[-1] for one in low[0][:-1]]), np.array([one[0] for one in low[1][1:]])
-    before, after = axes[0][:-1], axes[1][1:]
+    starts = np.array([one[-1] for one in ends[:-1]])
+    stops = np.array([one[0] for one in begins[1:]])
+    before = last[:-1]
+    after = first[1:]
     left = np.arange(len(starts))
     for lift in LIFTS:
-        high = starts[left] + lift * before[left], stops[left] + lift * after[left]
-        lower = ((high[0] - up[:-1][left]) * before[left]).sum(axis=1) < 0
-        lower &= ((high[1] - down[1:][left]) * after[left]).sum(axis=1) < 0
-        left, high = left[lower], (high[0][lower], high[1][lower])
+        high_start = starts[left] + lift * before[left]
+        high_stop = stops[left] + lift * after[left]
+        rise_at_start = ((high_start - up[:-1][left]) * before[left]).sum(axis=1)
+        rise_at_stop = ((high_stop - down[1:][left]) * after[left]).sum(axis=1)
+        lower = (rise_at_start < 0) & (rise_at_stop < 0)
+        left = left[lower]
         if not len(left):
             return
-        free = how.clear(high[0], high[1], before[left], after[left], LinkMotion.CROSSING)
-        free &= how.clear(starts[left], high[0], before[left], before[left], LinkMotion.LIFT)
-        free &= how.clear(stops[left], high[1], after[left], after[left], LinkMotion.LIFT)
-        up[left[free]], down[left[free] + 1] = high[0][free], high[1][free]
+        high_start = high_start[lower]
+        high_stop = high_stop[lower]
+        axis_before = before[left]
+        axis_after = after[left]
+        free = how.clear(high_start, high_stop, axis_before, axis_after, LinkMotion.CROSSING)
+        free &= how.clear(starts[left], high_start, axis_before, axis_before, LinkMotion.LIFT)
+        free &= how.clear(stops[left], high_stop, axis_after, axis_after, LinkMotion.LIFT)
+        up[left[free]] = high_start[free]
+        down[left[free] + 1] = high_stop[free]
         left = left[~free]

@@ -65,15 +65,23 @@ class MachineMotions:
 
     def rows(self, chosen: NDArray[np.bool_] | NDArray[np.intp]) -> "MachineMotions":
         """Some of them."""
-        return MachineMotions(self.linear[chosen], self.rotary[chosen], self.tips[chosen], self.axes[chosen],
-                              self.arrival[chosen])
+        linear = self.linear[chosen]
+        rotary = self.rotary[chosen]
+        tips = self.tips[chosen]
+        return MachineMotions(linear, rotary, tips, self.axes[chosen], self.arrival[chosen])
 
     def halves(self) -> "MachineMotions":
         """Each as two."""
-        linear, rotary, tips, axes = (np.stack([ends[:, 0], ends.mean(axis=1), ends.mean(axis=1), ends[:, 1]], axis=1)
-                                      .reshape(-1, 2, ends.shape[-1])
-                                      for ends in (self.linear, self.rotary, self.tips, self.axes))
-        return MachineMotions(linear, rotary, tips, np.asarray(unit(axes)), np.repeat(self.arrival, 2))
+        axes = unit(_halves(self.axes))
+        arrival = np.repeat(self.arrival, 2)
+        return MachineMotions(_halves(self.linear), _halves(self.rotary), _halves(self.tips), np.asarray(axes), arrival)
+
+
+def _halves(ends: Array) -> Array:
+    """Both ends of straight motions (n, 2, m), each motion as two, (2 n, 2, m)."""
+    middle = ends.mean(axis=1)
+    halves = np.stack([ends[:, 0], middle, middle, ends[:, 1]], axis=1)
+    return np.asarray(halves.reshape(-1, 2, ends.shape[-1]))
 
 
 def motions(tips: Array, axes: Array, rotary: Array, linear: Array, arrival: NDArray[np.int64]) -> MachineMotions:
@@ -90,7 +98,11 @@ def motions(tips: Array, axes: Array, rotary: Array, linear: Array, arrival: NDA
     arrival : (n,) array of int
         Point of the path at which the motion arrives that ends at each point.
     """
-    start, end = (slice(-1), slice(1, None)) if len(tips) > 1 else (slice(None), slice(None))
+    start = slice(None)
+    end = slice(None)
+    if len(tips) > 1:
+        start = slice(-1)
+        end = slice(1, None)
     both = [np.stack([rows[start], rows[end]], axis=1) for rows in (linear, rotary, tips, axes)]
     return MachineMotions(both[0], both[1], both[2], both[3], arrival[end])
 
@@ -138,7 +150,9 @@ def meeting_in_motion(mounting: Mounting, way: MachineMotions, around: MachineSu
     changes by more than the sum over all axes of their turns times the reach of what they carry.
     """
     for look in (_Leaning(mounting, around), _Turning(mounting, around)):
-        left, total, done = [way], max(len(way.arrival), 1), 0
+        left = [way]
+        total = max(len(way.arrival), 1)
+        done = 0
         while left:
             some = left.pop()
             play = look.play(some)
@@ -150,7 +164,8 @@ def meeting_in_motion(mounting: Mounting, way: MachineMotions, around: MachineSu
                     continue
                 if found.distance + play < around.required or play <= FINE:
                     k = min(found.motion, len(some.arrival) - 1)
-                    return found._replace(motion=int(some.arrival[k])), some.rotary[k].mean(axis=0)
+                    meeting = found._replace(motion=int(some.arrival[k]))
+                    return meeting, some.rotary[k].mean(axis=0)
             left += look.split(some)
     return None
 
@@ -159,17 +174,22 @@ class _Turning:
     """Everything in the machine but the tool over what goes along with the part, by the rotary axes."""
 
     def __init__(self, mounting: Mounting, around: MachineSurroundings) -> None:
-        self.mounting, self.around, self.reach = mounting, around, arms(mounting, around)
+        self.mounting = mounting
+        self.around = around
+        self.reach = arms(mounting, around)
 
     def play(self, some: MachineMotions) -> float:
         """By the reach of what each axis turns."""
-        return float(np.ptp(some.rotary, axis=(0, 1)) @ self.reach) / 2
+        turns = np.ptp(some.rotary, axis=(0, 1))
+        return float(turns @ self.reach) / 2
 
     def nearest(self, some: MachineMotions, most: float) -> CollisionPoint | None:
         """With the rotary axes in the middle."""
-        middle = (some.rotary.min(axis=(0, 1)) + some.rotary.max(axis=(0, 1))) / 2
-        return meeting_on(self.mounting, middle, _ways(some.linear), self.around, with_tool=False, most=most,
-                          over_table=False)
+        least = some.rotary.min(axis=(0, 1))
+        greatest = some.rotary.max(axis=(0, 1))
+        middle = (least + greatest) / 2
+        ways = _ways(some.linear)
+        return meeting_on(self.mounting, middle, ways, self.around, with_tool=False, most=most, over_table=False)
 
     def split(self, some: MachineMotions) -> list[MachineMotions]:
         """By rotary angles."""
@@ -181,33 +201,49 @@ class _Leaning:
 
     def __init__(self, mounting: Mounting, around: MachineSurroundings) -> None:
         machine = mounting.machine
+        carrier = carrier_of(machine)
         stand = standing(machine, np.zeros(len(machine.rotary)), mounting.table_from_part)
-        self.still: list[tuple[str, BodyTree]] = [(one.body.name, single(one.shape)) for one in stand
-                                                  if one.body.carried == carrier_of(machine)]
+        self.still: list[tuple[str, BodyTree]] = []
+        for one in stand:
+            if one.body.carried == carrier:
+                self.still.append((one.body.name, single(one.shape)))
         rows = solid_pieces(around.tool.profile, around.tool.outlines)
-        self.names, self.pieces = [COMPONENTS[int(row[7])] for row in rows], convex_pieces(rows)
+        self.names = [COMPONENTS[int(row[7])] for row in rows]
+        self.pieces = convex_pieces(rows)
         self.arm = float(self.pieces.reach.max()) if self.still else 0.0
 
     @staticmethod
     def _middle(some: MachineMotions) -> Array:
-        way = (some.axes.min(axis=(0, 1)) + some.axes.max(axis=(0, 1))) / 2
-        return np.asarray(unit(way)) if np.linalg.norm(way) > 0 else some.axes[0, 0]
+        least = some.axes.min(axis=(0, 1))
+        greatest = some.axes.max(axis=(0, 1))
+        way = (least + greatest) / 2
+        if np.linalg.norm(way) == 0:
+            return np.asarray(some.axes[0, 0])
+        return np.asarray(unit(way))
 
     def play(self, some: MachineMotions) -> float:
         """By how far the tool reaches from its tip."""
-        angle = float(angle_between(some.axes.reshape(-1, 3), self._middle(some)).max())
-        return 2 * self.arm * float(np.sin(min(angle + _OFF, np.pi) / 2))
+        axes = some.axes.reshape(-1, 3)
+        angle = float(angle_between(axes, self._middle(some)).max())
+        half = min(angle + _OFF, np.pi) / 2
+        return 2 * self.arm * float(np.sin(half))
 
     def nearest(self, some: MachineMotions, most: float) -> CollisionPoint | None:
         """With the tool along the middle axis."""
-        axis, frame, best = self._middle(some), np.eye(4), None
+        axis = self._middle(some)
+        frame = np.eye(4)
         frame[:3, :3] = np.stack([*perpendicular(axis), axis], axis=1)
-        trail, pieces, least = tree_over(_ways(some.tips)), self.pieces.moved(frame), most
+        trail = tree_over(_ways(some.tips))
+        pieces = self.pieces.moved(frame)
+        best: CollisionPoint | None = None
+        least = most
         for k, name in enumerate(self.names):
+            piece = pieces.rows(np.array([k]))
             for other, tree in self.still:
-                distance, motion, _ = approach(pieces.rows(np.array([k])), trail, tree, least)
+                distance, motion, _ = approach(piece, trail, tree, least)
                 if distance < least:
-                    best, least = CollisionPoint(name, other, distance, motion), distance
+                    best = CollisionPoint(name, other, distance, motion)
+                    least = distance
         return best
 
     def split(self, some: MachineMotions) -> list[MachineMotions]:
@@ -219,11 +255,15 @@ def _split(some: MachineMotions, values: Callable[[MachineMotions], Array]) -> l
     """Motions in two sets, by the value along which their middles differ most; as halves where they change more."""
     ends = values(some)
     middle = ends.mean(axis=1)
-    apart, own = np.ptp(middle, axis=0), np.abs(ends[:, 1] - ends[:, 0]).sum(axis=1)
+    apart = np.ptp(middle, axis=0)
+    own = np.abs(ends[:, 1] - ends[:, 0]).sum(axis=1)
     if apart.max(initial=0.0) < own.max(initial=0.0):
-        return [some.halves()] if len(some.arrival) > 1 else [some.halves().rows(np.array([k])) for k in (0, 1)]
-    which = int(np.argmax(apart))
-    near = middle[:, which] <= (middle[:, which].min() + middle[:, which].max()) / 2
+        halves = some.halves()
+        if len(some.arrival) > 1:
+            return [halves]
+        return [halves.rows(np.array([k])) for k in (0, 1)]
+    along = middle[:, int(np.argmax(apart))]
+    near = along <= (along.min() + along.max()) / 2
     return [some.rows(~near), some.rows(near)]
 
 
@@ -231,4 +271,6 @@ def _ways(ends: Array) -> ConvexBodies:
     """Straight ways between ends (n, 2, 3)."""
     spread = np.zeros((len(ends), 3, 3))
     spread[:, 0] = (ends[:, 1] - ends[:, 0]) / 2
-    return segments(np.zeros((len(ends) + 1, 3)))._replace(centre=ends.mean(axis=1)[:, None], spread=spread)
+    centre = ends.mean(axis=1)[:, None]
+    still = segments(np.zeros((len(ends) + 1, 3)))
+    return still._replace(centre=centre, spread=spread)

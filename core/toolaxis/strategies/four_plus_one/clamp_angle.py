@@ -103,11 +103,12 @@ class ClampSearch:
     """
 
     def __init__(self, job: FaceProblem, mounting: Mounting) -> None:
-        self.job, self.mounting = job, mounting
-        self.nodes = {feed: Nodes(ClampedChart(job.worth.face, feed), job.worth.tool.radius) for feed in ("u", "v")}
         worth = job.worth
-        self.plain = Cut(worth.tool, np.array([0.0, 0.0, 1.0]), worth.scallop, worth.allowance,
-                         worth.greatest_step_over)
+        upright = np.array([0.0, 0.0, 1.0])
+        self.job = job
+        self.mounting = mounting
+        self.nodes = {feed: Nodes(ClampedChart(worth.face, feed), worth.tool.radius) for feed in ("u", "v")}
+        self.plain = Cut(worth.tool, upright, worth.scallop, worth.allowance, worth.greatest_step_over)
         self.looked = 0
 
     def clamp(self, which: int, angle: float) -> Clamp:
@@ -119,9 +120,10 @@ class ClampSearch:
         angle : float
             rad
         """
-        axis = self.mounting.machine.rotary[which]
-        return Clamp(self.mounting.machine, which, float(np.clip(axis.rounded(angle), axis.low, axis.high)),
-                     placement(self.mounting.table_from_part))
+        machine = self.mounting.machine
+        axis = machine.rotary[which]
+        within = np.clip(axis.rounded(angle), axis.low, axis.high)
+        return Clamp(machine, which, float(within), placement(self.mounting.table_from_part))
 
     def angles(self, which: int) -> Array:
         """Angles of the axis that is free with one clamped, rad: two turns of one without end, so that it has none.
@@ -132,8 +134,10 @@ class ClampSearch:
             The clamped one.
         """
         axis = self.mounting.machine.rotary[1 - which]
-        low, high = max(axis.low, -2 * np.pi), min(axis.high, 2 * np.pi)
-        return np.linspace(low, high, 1 + max(int(np.ceil((high - low) / FREE)), 1))
+        low = max(axis.low, -2 * np.pi)
+        high = min(axis.high, 2 * np.pi)
+        gaps = int(np.ceil((high - low) / FREE))
+        return np.linspace(low, high, 1 + max(gaps, 1))
 
     def reckoned(self, clamp: Clamp, feed: str) -> ClampCandidate | None:
         """The widest strips by screening alone; None where some place has none.
@@ -144,26 +148,32 @@ class ClampSearch:
         feed : str
         """
         angles = self.angles(clamp.which)
-        widths, gates = self._widths(clamp, feed, angles), self._gates(clamp, feed)
+        widths = self._widths(clamp, feed, angles)
+        gates = self._gates(clamp, feed)
         known = np.zeros(widths.shape, dtype=bool)
-        return self._candidate(clamp, feed, angles, widths, widest(widths, angles, gates), gates, known)
+        chosen = widest(widths, angles, gates)
+        return self._candidate(clamp, feed, angles, widths, chosen, gates, known)
 
     def _candidate(self, clamp: Clamp, feed: str, angles: Array, widths: Array, chosen: Index | None,
                    gates: SingularSides, known: Bools) -> ClampCandidate | None:
         if chosen is None:
             return None
-        nodes, least = self.nodes[feed], narrowest(widths, chosen)
+        nodes = self.nodes[feed]
+        least = narrowest(widths, chosen)
+        # By the trapezoidal rule over the passes' places.
         weight = np.full(NODES[1], nodes.step[1] - nodes.step[0])
         weight[[0, -1]] /= 2
-        return ClampCandidate(clamp, feed, float((weight / least).sum()), float((weight * nodes.lengths / least).sum()),
-                              angles, widths, chosen, gates, known)
+        passes = float((weight / least).sum())
+        length = float((weight * nodes.lengths / least).sum())
+        return ClampCandidate(clamp, feed, passes, length, angles, widths, chosen, gates, known)
 
     def _gates(self, clamp: Clamp, feed: str) -> SingularSides:
         """Where the axis passes the normal, and where it must not: too near to it, or with something in the way."""
         nodes = self.nodes[feed]
         normals = self.job.worth.face.normal(nodes.uv)
         at = free_angles(normals, clamp).reshape(NODES)
-        at = np.unwrap(np.unwrap(at, axis=0), axis=1)
+        at = np.unwrap(at, axis=0)
+        at = np.unwrap(at, axis=1)
         axes = clamp.axes(at.ravel())
         shut = np.asarray(angle_between(axes, normals)) < self._upright
         some = np.flatnonzero(nodes.counts.ravel() & ~shut)
@@ -176,13 +186,17 @@ class ClampSearch:
 
     def _widths(self, clamp: Clamp, feed: str, angles: Array) -> Array:
         """Strip widths in the step parameter, (j, i, k); 0 where there is none, infinite off the face."""
-        nodes, limits = self.nodes[feed], self.job.feasibility
-        axes, forms = clamp.axes(angles), nodes.forms
+        nodes = self.nodes[feed]
+        forms = nodes.forms
+        axes = clamp.axes(angles)
         half = screen_many(forms, axes, self.plain.numbers, self.plain.scallop)
         along, left, up = (axes @ forms[:, 3 * c:3 * c + 3].T for c in range(3))
         width = 2 * half * lean_ratios(self.plain.leans, along, left)
-        width = np.minimum(width, self.plain.greatest_step_over / np.maximum(forms[:, 12], 1e-12))
-        width[(up > np.cos(self._upright)) | (up < np.cos(limits.greatest_angle))] = 0.0
+        pace = np.maximum(forms[:, 12], 1e-12)
+        width = np.minimum(width, self.plain.greatest_step_over / pace)
+        is_upright = up > np.cos(self._upright)
+        leans_too_far = up < np.cos(self.job.feasibility.greatest_angle)
+        width[is_upright | leans_too_far] = 0.0
         width[:, ~nodes.counts.ravel()] = np.inf
         self.looked += len(axes)
         return np.asarray(width.reshape(len(angles), *NODES))
@@ -196,29 +210,36 @@ class ClampSearch:
         feed : str
         """
         self.job.progress.check()
-        angles, limits = self.angles(clamp.which), while_moving(self.job.feasibility.limits)
+        angles = self.angles(clamp.which)
+        limits = while_moving(self.job.feasibility.limits)
         widths = self._widths(clamp, feed, angles)
         if limits is not None:
-            widths[~limits.allowed(clamp.axes(angles))] = 0.0
+            allowed = limits.allowed(clamp.axes(angles))
+            widths[~allowed] = 0.0
         known = np.zeros(widths.shape, dtype=bool)
         known[:, ~self.nodes[feed].counts] = True
-        return self._settle_angles(clamp, feed, angles, widths, self._gates(clamp, feed), known)
+        gates = self._gates(clamp, feed)
+        return self._settle_angles(clamp, feed, angles, widths, gates, known)
 
     def _settle_angles(self, clamp: Clamp, feed: str, angles: Array, widths: Array, gates: SingularSides,
                        known: Bools) -> ClampCandidate | None:
         """Angles chosen anew until nothing is in the way of any; widths are set to 0 where something is."""
-        axes, known = clamp.axes(angles), known.copy()
+        axes = clamp.axes(angles)
+        uv = self.nodes[feed].uv
+        rows = np.arange(len(angles))[:, None, None]
+        known = known.copy()
         for _ in range(_ROUNDS):
             chosen = widest(widths, angles, gates)
             if chosen is None:
                 return None
-            near = np.abs(np.arange(len(angles))[:, None, None] - chosen) <= _AROUND
-            new = np.flatnonzero((near & ~known & (widths > 0)).ravel())
+            near = np.abs(rows - chosen) <= _AROUND
+            new = np.flatnonzero(near & ~known & (widths > 0))
             known |= near
             if not len(new):
                 break
             j, node = np.divmod(new, NODES[0] * NODES[1])
-            widths.ravel()[new[~self._free(self.nodes[feed].uv[node], axes[j])]] = 0.0
+            is_free = self._free(uv[node], axes[j])
+            widths.ravel()[new[~is_free]] = 0.0
             if (np.take_along_axis(widths, chosen[None], axis=0) > 0).all():
                 break
         else:
@@ -235,32 +256,38 @@ class ClampSearch:
         bad : (m,) array of int
             Places among `Nodes.fine` where that was found, with the angles of its passes.
         """
-        nodes, angles = self.nodes[one.feed], one.angles
+        nodes = self.nodes[one.feed]
+        angles = one.angles
         along, step = (part[bad] for part in nodes.fine)
-        i = np.clip(np.searchsorted(nodes.along, along) - 1, 0, NODES[0] - 2)
-        k = np.clip(np.searchsorted(nodes.step, step) - 1, 0, NODES[1] - 2)
+        i = _cell_of(nodes.along, along)
+        k = _cell_of(nodes.step, step)
         corners = np.array([one.chosen[i + di, k + dk] for di, dk in _CORNERS])
         rows = np.arange(len(angles))[:, None]
-        j, place = np.nonzero((rows >= corners.min(axis=0) - _AROUND) & (rows <= corners.max(axis=0) + _AROUND))
+        not_below = rows >= corners.min(axis=0) - _AROUND
+        not_above = rows <= corners.max(axis=0) + _AROUND
+        j, place = np.nonzero(not_below & not_above)
         uv = nodes.chart.uv(along, step)
+        axes = one.clamp.axes(angles)
         shut = np.zeros((len(angles), len(bad)), dtype=bool)
-        shut[j, place] = ~self._free(uv[place], one.clamp.axes(angles)[j])
+        shut[j, place] = ~self._free(uv[place], axes[j])
         widths = one.widths.copy()
         for di, dk in _CORNERS:
-            for one_place in range(len(bad)):
-                widths[shut[:, one_place], i[one_place] + di, k[one_place] + dk] = 0.0
+            for m in range(len(bad)):
+                widths[shut[:, m], i[m] + di, k[m] + dk] = 0.0
         return self._settle_angles(one.clamp, one.feed, angles, widths, one.gates, one.known)
 
     def _free(self, uv: Array, axes: Array) -> NDArray[np.bool_]:
         """Whether the tool keeps all distances at contacts with axes, (n,)."""
         worth = self.job.worth
         self.looked += len(axes)
-        moves = motions(place(worth.face, worth.tool, uv, axes, worth.allowance), axes)
+        tips = place(worth.face, worth.tool, uv, axes, worth.allowance)
+        moves = motions(tips, axes)
         free = np.ones(len(axes), dtype=bool)
         for group in self.job.feasibility.groups:
             some = np.flatnonzero(free)
-            table = np.tile(group.required, (len(group.faces), 1))
-            free[some] = keeps_limits(group.cells, worth.tool, moves[some], table).blocked < 0
+            required = np.tile(group.required, (len(group.faces), 1))
+            found = keeps_limits(group.cells, worth.tool, moves[some], required)
+            free[some] = found.blocked < 0
         return free
 
     def cut(self, one: ClampCandidate, share: float, inset: int = 0) -> tuple[MovingCut[ClampedAxis] | None, Index]:
@@ -282,10 +309,9 @@ class ClampSearch:
         (m,) array of int
             Places among `Nodes.fine` where something is in the way before anything is moved.
         """
-        nodes, first = self.nodes[one.feed], None
-        low, high = bands(np.where(one.known, one.widths, 0.0), one.angles, one.chosen, share, one.gates)
-        gap, middle = inset * (one.angles[1] - one.angles[0]), (low + high) / 2
-        low, high = np.minimum(low + gap, middle), np.maximum(high - gap, middle)
+        nodes = self.nodes[one.feed]
+        low, high = self._bounds(one, share, inset)
+        first: Index | None = None
         for _ in range(_REPAIRS):
             made = self._with(one, smoothest(low, high, *nodes.ways))
             bad = self._bad(made)
@@ -295,55 +321,80 @@ class ClampSearch:
             moves = self._away(made, bad)
             if moves is None:
                 return None, first
-            up, down = (self._pushed(nodes, moves, sense) for sense in (1.0, -1.0))
+            up = self._pushed(nodes, moves, 1.0)
+            down = self._pushed(nodes, moves, -1.0)
             if (np.minimum(up, down) > 0).any():
                 return None, first
-            low = np.where(up > 0, np.maximum(low, made.field.angles.values + up), low)
-            high = np.where(down > 0, np.minimum(high, made.field.angles.values - down), high)
-            low, high = np.where(down > 0, np.minimum(low, high), low), np.where(up > 0, np.maximum(low, high), high)
+            values = made.field.angles.values
+            low = np.where(up > 0, np.maximum(low, values + up), low)
+            high = np.where(down > 0, np.minimum(high, values - down), high)
+            # A bound that is moved takes the other one along.
+            lower = np.where(down > 0, np.minimum(low, high), low)
+            high = np.where(up > 0, np.maximum(low, high), high)
+            low = lower
         return None, np.zeros(0, dtype=np.intp) if first is None else first
+
+    def _bounds(self, one: ClampCandidate, share: float, inset: int) -> tuple[Array, Array]:
+        """Bands around the chosen angles, less some angles at both sides, (i, k) each, rad."""
+        widths = np.where(one.known, one.widths, 0.0)
+        low, high = bands(widths, one.angles, one.chosen, share, one.gates)
+        gap = inset * (one.angles[1] - one.angles[0])
+        middle = (low + high) / 2
+        return np.minimum(low + gap, middle), np.maximum(high - gap, middle)
 
     def _with(self, one: ClampCandidate, values: Array) -> MovingCut[ClampedAxis]:
         """What cuts with angles at the nodes."""
-        nodes, worth = self.nodes[one.feed], self.job.worth
+        nodes = self.nodes[one.feed]
+        worth = self.job.worth
         axes = one.clamp.axes(values[nodes.counts])
-        turning = ClampedAxis(one.clamp, AngleField(nodes.along, nodes.step, values), one.feed)
-        return MovingCut(worth.tool, axes.mean(axis=0), worth.scallop, worth.allowance, worth.greatest_step_over,
-                         field=turning)
+        angles = AngleField(nodes.along, nodes.step, values)
+        turning = ClampedAxis(one.clamp, angles, one.feed)
+        mean = axes.mean(axis=0)
+        return MovingCut(worth.tool, mean, worth.scallop, worth.allowance, worth.greatest_step_over, field=turning)
 
     def _bad(self, cut: MovingCut[ClampedAxis]) -> Index:
         """Places among those between the nodes at which something is in the way."""
-        nodes, turning = self.nodes[cut.feed], cut.field
-        axes = turning.clamp.axes(turning.angles.at(*nodes.fine))
-        return np.flatnonzero(~self._free(nodes.chart.uv(*nodes.fine), axes))
+        nodes = self.nodes[cut.feed]
+        turning = cut.field
+        angles = turning.angles.at(*nodes.fine)
+        axes = turning.clamp.axes(angles)
+        uv = nodes.chart.uv(*nodes.fine)
+        return np.flatnonzero(~self._free(uv, axes))
 
     def _away(self, cut: MovingCut[ClampedAxis], bad: Index) -> _FreeingTurns | None:
         """The least turns that help at places where something is in the way; None where none does."""
-        nodes, clamp = self.nodes[cut.feed], cut.field.clamp
+        nodes = self.nodes[cut.feed]
         if len(bad) > _HOPELESS * len(nodes.fine[0]):
             return None
+        clamp = cut.field.clamp
         along, step = (part[bad] for part in nodes.fine)
-        uv, here = nodes.chart.uv(along, step), cut.field.angles.at(along, step)
+        uv = nodes.chart.uv(along, step)
+        here = cut.field.angles.at(along, step)
         turn = np.zeros(len(bad))
         left = np.arange(len(bad))
         for size in _HELP:
             if not len(left):
                 break
             for sense in (1.0, -1.0):
-                free = self._free(uv[left], clamp.axes(here[left] + sense * size))
-                turn[left[free & (turn[left] == 0)]] = sense * size
+                axes = clamp.axes(here[left] + sense * size)
+                free = self._free(uv[left], axes)
+                helped = left[free & (turn[left] == 0)]
+                turn[helped] = sense * size
             left = left[turn[left] == 0]
-        return None if len(left) else _FreeingTurns(along, step, turn)
+        if len(left):
+            return None
+        return _FreeingTurns(along, step, turn)
 
     @staticmethod
     def _pushed(nodes: Nodes, moves: _FreeingTurns, sense: float) -> Array:
         """By how much angles at nodes must move in a sense, (i, k) rad."""
-        out = np.zeros(NODES)
         some = np.flatnonzero(moves.turn * sense > 0)
-        i = np.clip(np.searchsorted(nodes.along, moves.along[some]) - 1, 0, NODES[0] - 2)
-        k = np.clip(np.searchsorted(nodes.step, moves.step[some]) - 1, 0, NODES[1] - 2)
+        i = _cell_of(nodes.along, moves.along[some])
+        k = _cell_of(nodes.step, moves.step[some])
+        size = np.abs(moves.turn[some])
+        out = np.zeros(NODES)
         for di, dk in _CORNERS:
-            np.maximum.at(out, (i + di, k + dk), np.abs(moves.turn[some]))
+            np.maximum.at(out, (i + di, k + dk), size)
         return out
 
     def counted(self, cut: MovingCut[ClampedAxis], standing: bool = True) -> Count:
@@ -357,3 +408,9 @@ class ClampSearch:
         """
         self.job.progress.check()
         return measure(ClampedChart(self.job.worth.face, cut.feed, standing), cut, _COUNTED)
+
+
+def _cell_of(lines: Array, values: Array) -> Index:
+    """Numbers of the gaps between nodes in which values lie, or of the nearest gap."""
+    before = np.searchsorted(lines, values) - 1
+    return np.clip(before, 0, len(lines) - 2)

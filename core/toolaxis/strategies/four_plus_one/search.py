@@ -6,6 +6,7 @@ angles near the best of these, half a degree apart.  The few with the least coun
 shortest are taken.  The best fixed axis stands beside them, so that no result is longer than that.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees, inf
@@ -97,7 +98,9 @@ def machine_of(job: FaceProblem) -> Mounting:
         When there is none with two driven rotary axes.
     """
     mounting = mounting_of(job.feasibility.limits)
-    driven = 0 if mounting is None else sum(not axis.by_hand for axis in mounting.machine.rotary)
+    driven = 0
+    if mounting is not None:
+        driven = sum(not axis.by_hand for axis in mounting.machine.rotary)
     if mounting is None or driven != 2:
         raise InvalidInput("strategy 'four-plus-one' clamps one of two driven rotary axes and turns the other: name a "
                            "machine that has them")
@@ -113,10 +116,12 @@ def clampable_angles(axis: RotaryAxis, step: float) -> Array:
     step : float
         About how far apart, rad.
     """
-    low, high = max(axis.low, -np.pi), min(axis.high, np.pi)
-    whole = high - low > 2 * np.pi - 1e-9
-    count = max(round((high - low) / step), 1)
-    return np.asarray(np.linspace(low, high, count + 1)[:count if whole else None])
+    low = max(axis.low, -np.pi)
+    high = min(axis.high, np.pi)
+    gaps = max(round((high - low) / step), 1)
+    angles = np.linspace(low, high, gaps + 1)
+    is_whole_turn = high - low > 2 * np.pi - 1e-9
+    return np.asarray(angles[:-1] if is_whole_turn else angles)
 
 
 def screen_angles(search: ClampSearch, step: float = np.radians(STEP_DEG)) -> list[ClampCandidate]:
@@ -142,15 +147,22 @@ def screen_angles(search: ClampSearch, step: float = np.radians(STEP_DEG)) -> li
             search.job.progress.check()
             rows = [search.reckoned(search.clamp(which, float(angle)), feed) for angle in angles]
             value = np.array([inf if one is None else one.value(objective) for one in rows])
-            least = value <= np.minimum(np.append(value[1:], inf), np.append(inf, value[:-1]))
+            before = np.append(inf, value[:-1])
+            behind = np.append(value[1:], inf)
+            least = value <= np.minimum(behind, before)
             found += [one for one, best in zip(rows, least, strict=True) if one is not None and best]
     found.sort(key=lambda one: (round(one.value(objective), 6), abs(one.clamp.angle)))
     kept: list[ClampCandidate] = []
     for one in found:  # the same axes by the other solution of the machine are no other candidate
-        if not any(one.feed == other.feed and one.clamp.which == other.clamp.which
-                   and abs(one.length - other.length) <= 1e-9 * one.length for other in kept):
+        if not any(_has_same_axes(one, other) for other in kept):
             kept.append(one)
     return kept
+
+
+def _has_same_axes(one: ClampCandidate, other: ClampCandidate) -> bool:
+    """Whether two candidates are one, by both solutions of the machine."""
+    is_like = one.feed == other.feed and one.clamp.which == other.clamp.which
+    return is_like and abs(one.length - other.length) <= 1e-9 * one.length
 
 
 class FourPlusOneSearch:
@@ -193,9 +205,12 @@ class FourPlusOneSearch:
             for number, (share, inset) in enumerate(_TRIES):
                 cut, found = self.search.cut(now, share, inset)
                 if cut is not None:
-                    count = self.search.counted(cut)
-                    return ClampedPasses(now, cut, count, number) if np.isfinite(count.length) else None
-                bad = bad if len(bad) else found
+                    passes = self.search.counted(cut)
+                    if not np.isfinite(passes.length):
+                        return None
+                    return ClampedPasses(now, cut, passes, number)
+                if not len(bad):
+                    bad = found
             after = self.search.barred(now, bad)
             if after is None:
                 return None
@@ -209,16 +224,21 @@ class FourPlusOneSearch:
         ----------
         start : ClampedPasses
         """
-        objective, middle, feed = self.search.job.worth.objective, start.candidate.clamp, start.candidate.feed
+        objective = self.search.job.worth.objective
+        middle = start.candidate.clamp
+        feed = start.candidate.feed
         best = start
         for sense in (1.0, -1.0):
-            k, last = 0, 0
+            k = 0
+            last = 0
             while (k - last < 2 and k < _FARTHEST) or k < _SIDE:
                 k += 1
-                near = self.search.clamp(middle.which, middle.angle + sense * k * np.radians(FINE_DEG))
+                angle = middle.angle + sense * k * np.radians(FINE_DEG)
+                near = self.search.clamp(middle.which, angle)
                 other = self.choice(near, feed)
                 if other is not None and other.value(objective) < best.value(objective):
-                    best, last = other, k
+                    best = other
+                    last = k
         return best
 
     def moving(self, one: ClampedPasses) -> ClampedPasses:
@@ -228,11 +248,16 @@ class FourPlusOneSearch:
         ----------
         one : ClampedPasses
         """
-        objective, found = self.search.job.worth.objective, []
+        objective = self.search.job.worth.objective
+        found: list[ClampedPasses] = []
         for number in range(one.tried, min(one.tried + 2, len(_TRIES))):
-            cut = one.cut if number == one.tried else self.search.cut(one.candidate, *_TRIES[number])[0]
+            cut: MovingCut[ClampedAxis] | None = one.cut
+            if number != one.tried:
+                share, inset = _TRIES[number]
+                cut, _ = self.search.cut(one.candidate, share, inset)
             if cut is not None:
-                found.append(ClampedPasses(one.candidate, cut, self.search.counted(cut, False), number))
+                passes = self.search.counted(cut, False)
+                found.append(ClampedPasses(one.candidate, cut, passes, number))
             if found and found[0].value(objective) <= _STEADY * one.value(objective):
                 break
         return min(found, key=lambda choice: choice.value(objective))
@@ -245,30 +270,43 @@ class FourPlusOneSearch:
         fixed : Orientation
         """
         objective = self.search.job.worth.objective
+
+        def value(one: ClampedPasses) -> float:
+            return one.value(objective)
+
         starts = [(one.clamp, one.feed) for one in screen_angles(self.search)[:_EXAMINED]]
         if fixed.axis is not None:
             rows = self.search.mounting.solutions(fixed.axis)[:1]
             starts += [(self.search.clamp(which, float(row[which])), fixed.feed) for row in rows for which in (0, 1)]
-        found = []
+        examined = []
         for k, (clamp, feed) in enumerate(starts):
             self.search.job.progress.report("clamped angles examined", k, len(starts))
-            found.append(self.choice(clamp, feed))
-        best = sorted((one for one in found if one is not None), key=lambda one: one.value(objective))
-        searched = list[ClampedPasses]()
+            examined.append(self.choice(clamp, feed))
+        best = sorted((one for one in examined if one is not None), key=value)
+        self._search_around(best, value)
+        every = sorted((one for one in self.known.values() if one is not None), key=value)
+        moving = [self.moving(one) for one in every[:_RANKED]]
+        return sorted(moving, key=value)
+
+    def _search_around(self, best: list[ClampedPasses], value: Callable[[ClampedPasses], float]) -> None:
+        """Examine angles around the few best ones, the best first, that lie apart from each other."""
+        searched: list[ClampedPasses] = []
         for one in best:
-            if len(searched) < _SEARCHED and one.value(objective) <= _HOPEFUL * best[0].value(objective) and not any(
-                    _near(one, other) for other in searched):
-                searched.append(one)
-                self.around(one)
-        every = sorted((one for one in self.known.values() if one is not None), key=lambda one: one.value(objective))
-        return sorted((self.moving(one) for one in every[:_RANKED]), key=lambda one: one.value(objective))
+            if len(searched) == _SEARCHED or value(one) > _HOPEFUL * value(best[0]):
+                continue
+            if any(_near(one, other) for other in searched):
+                continue
+            searched.append(one)
+            self.around(one)
 
 
 def _near(one: ClampedPasses, other: ClampedPasses) -> bool:
     """Whether two clamped angles are so near that one is looked at around the other."""
-    a, b = one.candidate, other.candidate
+    a = one.candidate
+    b = other.candidate
+    is_like = (a.clamp.which, a.feed) == (b.clamp.which, b.feed)
     apart = abs(a.clamp.angle - b.clamp.angle)
-    return (a.clamp.which, a.feed) == (b.clamp.which, b.feed) and apart < _SIDE * np.radians(FINE_DEG) + _SAME
+    return is_like and apart < _SIDE * np.radians(FINE_DEG) + _SAME
 
 
 def four_plus_one(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
@@ -300,22 +338,25 @@ def four_plus_one(job: FaceProblem) -> tuple[Orientation, ToolPath | None]:
     **Properties**: 1. never longer than the best fixed axis, nor with more passes where these are the objective; 2. the
     free angle has no jump along a pass or from one to the next; 3. the clamped one stands still on cuts and links.
     """
-    search, refused = ClampSearch(job, machine_of(job)), list[str]()
+    search = ClampSearch(job, machine_of(job))
+    refused: list[str] = []
     fixed, _ = find_axis(job)
     best: list[tuple[Orientation, ToolPath | None]] = []
     for one in FourPlusOneSearch(search).found(fixed):
-        found = _try_clamp(search, one, fixed, refused)
-        best += [] if found is None else [found]
+        laid = _try_clamp(search, one, fixed, refused)
+        if laid is not None:
+            best.append(laid)
         if len(best) == _LAID:
             break
     if best:
-        found = min(best, key=lambda row: _price(job, row[0]))
-        if fixed.axis is None or _price(job, found[0]) <= _price(job, fixed):
-            return replace(found[0], reasons=(*found[0].reasons, *refused)), found[1]
+        found, path = min(best, key=lambda row: _price(job, row[0]))
+        if fixed.axis is None or _price(job, found) <= _price(job, fixed):
+            return replace(found, reasons=(*found.reasons, *refused)), path
     if fixed.axis is None:
         return replace(fixed, reasons=(*fixed.reasons, *refused)), None
     words = "turning one axis makes no shorter passes than this fixed one"
-    return replace(fixed, reasons=(words, *fixed.reasons, *refused)), job.made(fixed.axis, fixed.feed)
+    path = job.made(fixed.axis, fixed.feed)
+    return replace(fixed, reasons=(words, *fixed.reasons, *refused)), path
 
 
 def _price(job: FaceProblem, found: Orientation) -> float:
