@@ -53,11 +53,14 @@ def nearness(face: Face, others: Sequence[Face]) -> BladeGapPoints:
     best: BladeGapPoints | None = None
     for other in others:
         theirs = _samples(other)
-        away, index = cKDTree(other.evaluate(theirs).point).query(points)
-        if best is not None and away.min() > best.distance + 0.5 * (face.diagonal + other.diagonal) / _GRID:
+        tree = cKDTree(other.evaluate(theirs).point)
+        away, number = tree.query(points)
+        between_samples = 0.5 * (face.diagonal + other.diagonal) / _GRID
+        if best is not None and away.min() > best.distance + between_samples:
             continue
-        for k in np.argsort(away, kind="stable")[:_STARTS]:
-            found = _walk_downhill(face, other, (mine[k], theirs[index[k]]))
+        nearest_first = np.argsort(away, kind="stable")
+        for k in nearest_first[:_STARTS]:
+            found = _walk_downhill(face, other, (mine[k], theirs[number[k]]))
             if best is None or found.distance < best.distance:
                 best = found
     assert best is not None
@@ -66,7 +69,8 @@ def nearness(face: Face, others: Sequence[Face]) -> BladeGapPoints:
 
 def _samples(face: Face) -> Array:
     border = np.concatenate(face.outline)
-    return np.concatenate([face.grid(_GRID, _GRID), border[::max(1, len(border) // 64)]])
+    stride = max(1, len(border) // 64)
+    return np.concatenate([face.grid(_GRID, _GRID), border[::stride]])
 
 
 def _walk_downhill(face: Face, other: Face, start: tuple[Array, Array]) -> BladeGapPoints:
@@ -87,30 +91,35 @@ def _slid(face: Face, other: Face, start: tuple[Array, Array]) -> tuple[Array, A
     from scipy.optimize import minimize
 
     bounds = np.array([*np.reshape(face.bounds, (2, 2)), *np.reshape(other.bounds, (2, 2))])
-    low, span = bounds[:, 0], np.ptp(bounds, axis=1)
+    low = bounds[:, 0]
+    span = np.ptp(bounds, axis=1)
 
     def _half_square(x: Array) -> tuple[float, Array]:
         at = low + x * span
-        a, b = face.evaluate(at[None, :2]), other.evaluate(at[None, 2:])
+        a = face.evaluate(at[None, :2])
+        b = other.evaluate(at[None, 2:])
         gap = a.point[0] - b.point[0]
         slope = np.array([gap @ a.su[0], gap @ a.sv[0], -gap @ b.su[0], -gap @ b.sv[0]])
         return float(gap @ gap) / 2, slope * span
 
-    first = np.clip((np.concatenate(start) - low) / span, 0.0, 1.0)
-    found = minimize(_half_square, first, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * 4,
-                     options={"maxiter": 200, "ftol": 1e-15, "gtol": 1e-10})
+    first = (np.concatenate(start) - low) / span
+    first = np.clip(first, 0.0, 1.0)
+    options = {"maxiter": 200, "ftol": 1e-15, "gtol": 1e-10}
+    found = minimize(_half_square, first, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * 4, options=options)
     at = low + found.x * span
     return at[:2], at[2:]
 
 
 def _to_and_fro(face: Face, other: Face, start: Array) -> tuple[Array, Array]:
     """Nearest points of each on the other until the distance does not fall any more: their parameters."""
-    here, last = nearest(face, start, 12), np.inf
+    here = nearest(face, start, 12)
     there = nearest(other, here.point, 12)
+    last = np.inf
     for _ in range(_ROUNDS):
-        if there.distance[0] > last * (1 - 1e-6):
+        distance = there.distance[0]
+        if distance > last * (1 - 1e-6):
             break
-        last = float(there.distance[0])
+        last = float(distance)
         here = nearest(face, there.point, 12)
         there = nearest(other, here.point, 12)
     return here.uv[0], there.uv[0]
@@ -134,12 +143,15 @@ def ahead(face: Face, others: Sequence[Face]) -> BladeGapPoints | None:
     2. moves with the faces.
     """
     mine = _samples(face)
-    points, normals = face.evaluate(mine).point, face.normal(mine)
+    points = face.evaluate(mine).point
+    normals = face.normal(mine)
     best: BladeGapPoints | None = None
     for other in others:
         length, uv = _ray_hits(points, normals, other)
         k = int(np.argmin(length))
-        if np.isfinite(length[k]) and (best is None or length[k] < best.distance):
+        if not np.isfinite(length[k]):
+            continue
+        if best is None or length[k] < best.distance:
             there = other.evaluate(uv[k:k + 1]).point[0]
             best = BladeGapPoints(float(length[k]), points[k], there, other.number, True)
     return best
@@ -152,18 +164,23 @@ def _ray_hits(points: Array, normals: Array, other: Face) -> tuple[Array, Array]
     along = np.einsum("ijk,ik->ij", way, normals)
     aside = np.linalg.norm(way - along[..., None] * normals[:, None], axis=2)
     pick = np.where(along > 0, aside, np.inf).argmin(axis=1)
-    uv, length = theirs[pick].copy(), along[np.arange(len(points)), pick]
-    bounds = np.reshape(other.bounds, (2, 2))
+    uv = theirs[pick].copy()
+    length = along[np.arange(len(points)), pick]
+    low, high = np.reshape(other.bounds, (2, 2)).T
     for _ in range(20):
         d = other.evaluate(uv)
         miss = points + length[:, None] * normals - d.point
         table = np.stack([d.su, d.sv, -normals], axis=2)
         sound = np.abs(np.linalg.det(table)) > 1e-12
         step = np.zeros_like(miss)
-        step[sound] = np.linalg.solve(table[sound], miss[sound][..., None])[..., 0]
-        uv, length = np.clip(uv + step[:, :2], bounds[:, 0], bounds[:, 1]), length + step[:, 2]
-    off = np.linalg.norm(points + length[:, None] * normals - other.evaluate(uv).point, axis=1)
-    return np.where((off < _MEETS) & (length > _MEETS) & other.contains(uv), length, np.inf), uv
+        solution = np.linalg.solve(table[sound], miss[sound][..., None])
+        step[sound] = solution[..., 0]
+        uv = np.clip(uv + step[:, :2], low, high)
+        length = length + step[:, 2]
+    ends = points + length[:, None] * normals
+    off = np.linalg.norm(ends - other.evaluate(uv).point, axis=1)
+    hits = (off < _MEETS) & (length > _MEETS) & other.contains(uv)
+    return np.where(hits, length, np.inf), uv
 
 
 def widest(gap: BladeGapPoints, clearance: float) -> float:

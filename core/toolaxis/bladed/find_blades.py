@@ -1,6 +1,7 @@
 """Blades on a hub, found by the rotational symmetry of a part's faces."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,14 +132,18 @@ def blades_of(part: Part) -> Bladed:
     sculptured = [face.number for face in part.sculptured]
     if not sculptured:
         raise NoPattern("the part has no sculptured face: blades are looked for among those")
-    point, line, count, strangers = _pattern(part, samples, sculptured)
-    axis = -canonical_sign(line)
+    pattern = _pattern(part, samples, sculptured)
+    point = pattern.point
+    count = pattern.parts
+    axis = -canonical_sign(pattern.axis)
+    strangers = pattern.strangers
     if strangers:
         raise UnsupportedGeometry(f"a turn by 1/{count} puts {len(strangers)} faces where no face like them is (face "
                                   f"{strangers[0]} the first): blades are missing or moved; choose faces by hand")
     numbers = [face.number for face in part.faces]
     turned = [n for n in numbers if _of_revolution(samples, n, point, axis)]
-    groups = _groups(part, [n for n in numbers if n not in turned], samples)
+    rest = [n for n in numbers if n not in turned]
+    groups = _groups(part, rest, samples)
     groups = [group for group in groups if _has_like(samples, group[0], sculptured)]
     if not groups:
         raise NoPattern(f"nothing but faces of revolution stands around an axis of {count} equal parts: no blades")
@@ -152,14 +157,28 @@ def blades_of(part: Part) -> Bladed:
     found = tuple(_blade(part, group, (turned, floor), samples, (point, axis)) for group in ordered)
     tips = {n for blade in found for n in blade.tip}
     beside = disc or {n for m in own for n in part.neighbours(m)}
-    return Bladed(point, axis, found, tuple(n for n in floor if n in beside and n not in tips))
+    hub = tuple(n for n in floor if n in beside and n not in tips)
+    return Bladed(point, axis, found, hub)
+
+
+class _Pattern(NamedTuple):
+    """An axis of so many equal parts: a point of it, its direction, and faces that have no like face in their place."""
+
+    point: Array
+    axis: Array
+    parts: int
+    strangers: list[int]
 
 
 def _disc(part: Part, samples: _Samples, blades: set[int]) -> set[int]:
     """Faces of the bodies that have no blade, small ones left out."""
     bodies = [body.faces for body in part.bodies if body.closed and not blades.intersection(body.faces)]
     areas = [sum(samples.area[n] for n in faces) for faces in bodies]
-    return {n for faces, area in zip(bodies, areas, strict=True) if area >= SMALL * max(areas) for n in faces}
+    found: set[int] = set()
+    for faces, area in zip(bodies, areas, strict=True):
+        if area >= SMALL * max(areas):
+            found.update(faces)
+    return found
 
 
 def _sample_faces(part: Part) -> _Samples:
@@ -178,58 +197,84 @@ def _sample_faces(part: Part) -> _Samples:
 
 def _inside(face: Face) -> Array:
     uv = face.grid(SAMPLES, SAMPLES)
-    return uv if len(uv) >= SAMPLES else np.concatenate([uv, *face.outline])
+    if len(uv) >= SAMPLES:
+        return uv
+    return np.concatenate([uv, *face.outline])
 
 
-def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> tuple[Array, Array, int, list[int]]:
+def _pattern(part: Part, samples: _Samples, sculptured: list[int]) -> _Pattern:
     """Axis and number of equal parts with the most faces in place, and the faces out of place."""
     best = PATTERN
     known = (False, 0)
-    found: tuple[Array, Array, int, list[int]] | None = None
+    found: _Pattern | None = None
     for exact, point, axis in _axes(part, samples, sculptured):
         looked = [n for n in sculptured if not _of_revolution(samples, n, point, axis)]
         least = SMALL * max((samples.area[n] for n in looked), default=0.0)
         looked = [n for n in looked if samples.area[n] >= least]
-        for count in range(2, MOST + 1 if looked else 2):
-            pairs, away = _counterparts(part, samples, looked, (point, axis), 2 * np.pi / count)
-            fit = sum(samples.area[n] * (1 - away[n] / 2) for n in pairs) / sum(samples.area[n] for n in looked)
-            worse = (exact, count) < known
+        if not looked:
+            continue
+        whole = sum(samples.area[n] for n in looked)
+        for number in range(2, MOST + 1):
+            pairs, away = _counterparts(part, samples, looked, (point, axis), 2 * np.pi / number)
+            in_place = sum(samples.area[n] * (1 - away[n] / 2) for n in pairs)
+            fit = in_place / whole
+            worse = (exact, number) < known
             clearly_better = fit > best + (_SLACK if worse else 1e-3)
             # As good with more parts: a pattern of twelve is one of six too.
-            finer = found is not None and not worse and count > known[1] and fit > best - _SLACK
+            finer = found is not None and not worse and number > known[1] and fit > best - _SLACK
             if clearly_better or finer:
                 best = fit
-                known = (exact, count)
+                known = (exact, number)
                 line = (point, axis) if exact else _refine_axis(samples, pairs, point, axis)
                 strangers = [n for n in looked if n not in pairs and _has_like(samples, n, looked)]
-                found = (*line, count, strangers)
+                found = _Pattern(*line, number, strangers)
     if found is None:
         raise NoPattern("no axis has a pattern of like faces around it: blades cannot be found on this part")
-    if not known[0]:  # an axis of inertia, refined by the blades: faces that are of revolution about it tell it exactly
-        near = [face.number for face in part.faces if face.kind in _ROUND_KINDS
-                and _of_revolution(samples, face.number, found[0], found[1], _ROUGHLY)]
-        if near:
-            found = (*_line_met_by_normals(samples, near), *found[2:])
-    return found
+    was_exact, _ = known
+    return found if was_exact else _refine_by_round_faces(part, samples, found)
+
+
+def _refine_by_round_faces(part: Part, samples: _Samples, found: _Pattern) -> _Pattern:
+    """The pattern with the axis of the faces that are nearly of revolution about an axis of inertia: they tell it
+    exactly."""
+    round_ = [face.number for face in part.faces if face.kind in _ROUND_KINDS]
+    near = [n for n in round_ if _of_revolution(samples, n, found.point, found.axis, _ROUGHLY)]
+    if not near:
+        return found
+    point, axis = _line_met_by_normals(samples, near)
+    return found._replace(point=point, axis=axis)
 
 
 def _has_like(samples: _Samples, number: int, numbers: list[int]) -> bool:
     """Whether another face has its area."""
-    return any(abs(samples.area[n] / samples.area[number] - 1) <= ALIKE for n in numbers if n != number)
+    own = samples.area[number]
+    return any(abs(samples.area[n] / own - 1) <= ALIKE for n in numbers if n != number)
 
 
 def _axes(part: Part, samples: _Samples, sculptured: list[int]) -> list[tuple[bool, Array, Array]]:
     """Axes worth trying: the line that normals of surfaces of revolution meet, exact, and the axis of inertia."""
+    result: list[tuple[bool, Array, Array]] = []
     round_ = [f.number for f in part.faces if f.kind in _ROUND_KINDS]
-    result = [(True, *_line_met_by_normals(samples, round_))] if round_ else []
+    if round_:
+        point, axis = _line_met_by_normals(samples, round_)
+        result.append((True, point, axis))
     points = np.concatenate([samples.points[n] for n in sculptured])
-    share = [np.full(len(samples.points[n]), samples.area[n] / len(samples.points[n])) for n in sculptured]
-    weight = np.concatenate(share)
+    weight = _area_of_each_point(samples, sculptured)
     values, vectors = np.linalg.eigh(np.cov(points.T, aweights=weight))
     # Of a body of revolution two moments are the same: the axis is the direction of the third.
-    alone = 0 if values[1] - values[0] > values[2] - values[1] else 2
-    axis = vectors[:, alone]
-    return [*result, (False, np.average(points, axis=0, weights=weight), axis)]
+    least, middle, greatest = values
+    alone = 0 if middle - least > greatest - middle else 2
+    centre = np.average(points, axis=0, weights=weight)
+    return [*result, (False, centre, vectors[:, alone])]
+
+
+def _area_of_each_point(samples: _Samples, numbers: list[int]) -> Array:
+    """What each point of faces stands for, its face's area shared evenly."""
+    shares = []
+    for n in numbers:
+        points = len(samples.points[n])
+        shares.append(np.full(points, samples.area[n] / points))
+    return np.concatenate(shares)
 
 
 def _line_met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, Array]:
@@ -247,7 +292,9 @@ def _line_met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, 
         _, values, lines = np.linalg.svd(rows, full_matrices=False)
         line = lines[-1]
         if values[-2] <= _ROUND * values[0]:  # cylinders alone: the line at infinity across them is met too
-            line = np.linalg.svd(lines[-2:, :3].T)[2][0] @ lines[-2:]
+            both = lines[-2:]
+            _, _, mixed = np.linalg.svd(both[:, :3].T)
+            line = mixed[0] @ both
         way = line[:3]
         moment = line[3:]
         length = max(float(np.linalg.norm(way)), 1e-9)
@@ -261,8 +308,10 @@ def _line_met_by_normals(samples: _Samples, numbers: list[int]) -> tuple[Array, 
 
 
 def _turn(axis: Array, angle: float) -> Array:
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return np.asarray(turn)
 
 
 def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[Array, Array],
@@ -273,10 +322,12 @@ def _counterparts(part: Part, samples: _Samples, looked: list[int], line: tuple[
     areas = np.array([samples.area[n] for n in looked])
     moved = (centres - point) @ _turn(axis, angle).T + point
     away = lengths(moved[:, None] - centres)
-    away[np.abs(areas[:, None] / areas - 1) > ALIKE] = np.inf
+    ratio = areas[:, None] / areas
+    away[np.abs(ratio - 1) > ALIKE] = np.inf
     np.fill_diagonal(away, np.inf)
     best = away.argmin(axis=1)
-    share = away[np.arange(len(looked)), best] / (IN_PLACE * part.diagonal)
+    nearest = away[np.arange(len(looked)), best]
+    share = nearest / (IN_PLACE * part.diagonal)
     near = np.flatnonzero(share < 1)
     pairs = {looked[i]: looked[int(best[i])] for i in near}
     return pairs, {looked[i]: float(share[i]) for i in near}
@@ -291,21 +342,24 @@ def _refine_axis(samples: _Samples, pairs: dict[int, int], point: Array, axis: A
     mb = np.average(b, axis=0, weights=weight)
     # The rotation that fits best, by the singular values of the covariance; never a reflection.
     u, _, vt = np.linalg.svd((a - ma).T @ ((b - mb) * weight[:, None]))
-    turn = (vt.T * [1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+    side = np.sign(np.linalg.det(vt.T @ u.T))
+    turn = (vt.T * [1, 1, side]) @ u.T
     way = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-    if np.linalg.norm(way) < 1e-6:
+    size = np.linalg.norm(way)
+    if size < 1e-6:
         return point, axis
-    d = way / np.linalg.norm(way)
-    foot = np.linalg.lstsq(np.eye(3) - turn, mb - turn @ ma, rcond=1e-9)[0]
-    return foot + d * ((ma - foot) @ d), d
+    d = way / size
+    foot, *_ = np.linalg.lstsq(np.eye(3) - turn, mb - turn @ ma, rcond=1e-9)
+    along = (ma - foot) @ d
+    return foot + d * along, d
 
 
 def _of_revolution(samples: _Samples, number: int, point: Array, axis: Array, within: float = MEETS) -> bool:
     """Whether no normal of a face has a part around the axis."""
     around = np.cross(axis, samples.points[number] - point)
     reach = np.maximum(np.linalg.norm(around, axis=1), 1e-9)
-    part_around = np.abs((samples.normals[number] * around).sum(axis=1))
-    return bool((part_around <= within * reach).all())
+    part_around = (samples.normals[number] * around).sum(axis=1)
+    return bool((np.abs(part_around) <= within * reach).all())
 
 
 def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]]:
@@ -318,8 +372,8 @@ def _groups(part: Part, numbers: list[int], samples: _Samples) -> list[list[int]
             group += [m for m in part.neighbours(n) if m in left and m not in group]
         left -= set(group)
         groups.append(sorted(group, key=lambda n: -samples.area[n]))
-    size = [sum(samples.area[n] for n in group) for group in groups]
-    return [group for group, own in zip(groups, size, strict=True) if own > 10 * SMALL * max(size)]
+    sizes = [sum(samples.area[n] for n in group) for group in groups]
+    return [group for group, size in zip(groups, sizes, strict=True) if size > 10 * SMALL * max(sizes)]
 
 
 def _in_turn(groups: list[tuple[list[int], Array]], axis: Array) -> list[list[int]]:
@@ -374,6 +428,8 @@ def _foremost(samples: _Samples, sides: tuple[int, int], end: Array, line: tuple
     point, axis = line
     points = np.concatenate([samples.points[n] for n in sides])
     normals = np.concatenate([samples.normals[n] for n in sides])
-    near = np.argsort(np.linalg.norm(points - end, axis=1))[:max(len(points) // 8, 1)]
+    order = np.argsort(np.linalg.norm(points - end, axis=1))
+    near = order[:max(len(points) // 8, 1)]
     reach = np.linalg.norm(np.cross(axis, end - point))
-    return float(reach), float(np.abs(normals[near] @ axis).mean())
+    flatness = np.abs(normals[near] @ axis).mean()
+    return float(reach), float(flatness)

@@ -110,9 +110,11 @@ class Estimator:
         """
         screening_cutter(tool, scallop, allowance)
         chosen = samples or sample_points(face, tool)
-        (rows_u, ends_u), (rows_v, ends_v) = (_prepare(face, feed, chosen) for feed in _FEEDS)
-        return Estimator(face, tool, scallop, allowance, greatest_step_over, chosen, (rows_u, rows_v), (ends_u, ends_v),
-                         lean_table(tool, scallop))
+        rows_u, ends_u = _prepare(face, "u", chosen)
+        rows_v, ends_v = _prepare(face, "v", chosen)
+        leans = lean_table(tool, scallop)
+        return Estimator(face, tool, scallop, allowance, greatest_step_over, chosen, (rows_u, rows_v),
+                         (ends_u, ends_v), leans)
 
     def many(self, axes: ArrayLike, feeds: str = "uv", exact: bool = True) -> Estimates:
         """Estimates for many axes.
@@ -128,12 +130,18 @@ class Estimator:
             screening, optimistic where the axis is near a normal.
         """
         directions = unit(as_rows(axes, 3, "axis"))
-        passes, length = np.full((2, len(directions), 2), np.inf)
+        number = len(directions)
+        passes = np.full((number, 2), np.inf)
+        length = np.full((number, 2), np.inf)
         for k, feed in enumerate(_FEEDS):
-            if feed in feeds and len(self.rows[k].owner):
-                places = np.concatenate([self.samples.uv, self.ends[k]])
-                ratio = self._ratios(directions, feed, places) if exact else np.ones((len(directions), len(places)))
-                passes[:, k], length[:, k] = self._sums(self.rows[k], directions, ratio)
+            if feed not in feeds or not len(self.rows[k].owner):
+                continue
+            places = np.concatenate([self.samples.uv, self.ends[k]])
+            if exact:
+                ratio = self._ratios(directions, feed, places)
+            else:
+                ratio = np.ones((number, len(places)))
+            passes[:, k], length[:, k] = self._sums(self.rows[k], directions, ratio)
         return Estimates(passes, length)
 
     def literal(self, axes: ArrayLike, feed: str = "u") -> Array:
@@ -150,19 +158,23 @@ class Estimator:
         """
         directions = unit(as_rows(axes, 3, "axis"))
         width = self._widths(directions, feed, self.samples.uv)
-        low, high = self.samples.extents[:, [2, 3] if feed == "u" else [0, 1]].T
+        of_step = [2, 3] if feed == "u" else [0, 1]
+        low, high = self.samples.extents[:, of_step].T
         edges = np.unique(np.concatenate([low, high]))
         middle = (edges[1:] + edges[:-1]) / 2
         within = (low < middle[:, None]) & (high > middle[:, None])
-        rate = np.where(width > 0, 1 / np.where(width > 0, width, 1.0), np.inf)  # Eq. (3), per unit of the parameter
+        is_cut = width > 0
+        rate = 1 / np.where(is_cut, width, 1.0)  # Eq. (3), per unit of the parameter
+        rate = np.where(is_cut, rate, np.inf)
         section = np.where(within, rate[:, None, :], 0.0).max(axis=2)  # Eq. (5)
         return np.asarray(section @ np.diff(edges))  # Eq. (4), added up
 
     def _sums(self, table: _SampledPasses, axes: Array, ratio: Array) -> tuple[Array, Array]:
-        passes, length = np.empty(len(axes)), np.empty(len(axes))
+        passes = np.empty(len(axes))
+        length = np.empty(len(axes))
+        sizes = (self._cutter(), self.scallop, self.greatest_step_over)
         kernel = _sum_rows if _compiled.available else sum_rows_numpy
-        kernel(table, np.ascontiguousarray(axes), np.ascontiguousarray(ratio), self.leans,
-               (self._cutter(), self.scallop, self.greatest_step_over), passes, length)
+        kernel(table, np.ascontiguousarray(axes), np.ascontiguousarray(ratio), self.leans, sizes, passes, length)
         return passes, length
 
     def _cutter(self) -> CutterParameters:
@@ -170,17 +182,25 @@ class Estimator:
 
     def _widths(self, axes: Array, feed: str, places: Array) -> Array:
         """Exact strip widths (k, n) in the step parameter at n places."""
-        uv, axis = np.tile(places, (len(axes), 1)), np.repeat(axes, len(places), axis=0)
+        number = len(axes)
+        uv = np.tile(places, (number, 1))
+        axis = np.repeat(axes, len(places), axis=0)
         halves = step_widths(self.face, self.tool, uv, axis, self.scallop, feed, self.allowance)
-        return np.asarray(np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0)).reshape(len(axes), -1)
+        is_cut = (halves > 0).all(axis=1)
+        width = np.where(is_cut, halves.sum(axis=1), 0.0)
+        return np.asarray(width).reshape(number, -1)
 
     def _ratios(self, axes: Array, feed: str, places: Array) -> Array:
         """Exact over second-order widths corrected for the lean, (k, n); 0 where there is none."""
         forms = contact_forms(self.face, places, feed, True)
         second = screen_many(forms, axes, self._cutter(), self.scallop)
-        second *= lean_ratios(self.leans, axes @ forms[:, :3].T, axes @ forms[:, 3:6].T)
+        along = axes @ forms[:, :3].T
+        across = axes @ forms[:, 3:6].T
+        second *= lean_ratios(self.leans, along, across)
         exact = self._widths(axes, feed, places)
-        return np.where(second > 0, exact / np.where(second > 0, 2 * second, 1.0), 0.0)
+        is_known = second > 0
+        ratio = exact / np.where(is_known, 2 * second, 1.0)
+        return np.where(is_known, ratio, 0.0)
 
 
 def estimate(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str = "u", *,
@@ -228,7 +248,11 @@ def estimate(face: Face, tool: Tool, axis: ArrayLike, scallop: float, feed: str 
         raise InvalidInput(f"feed is {feed!r}: it must be 'u' or 'v'")
     ready = Estimator.of(face, tool, scallop, allowance, samples)
     axes = as_rows(axis, 3, "axis")
-    passes = ready.literal(axes, feed) if literal else ready.many(axes, feed).passes[:, _FEEDS.index(feed)]
+    if literal:
+        passes = ready.literal(axes, feed)
+    else:
+        both = ready.many(axes, feed).passes
+        passes = both[:, _FEEDS.index(feed)]
     return float(passes[0]) if np.ndim(axis) == 1 else passes
 
 
@@ -243,25 +267,36 @@ def _prepare(face: Face, feed: str, samples: Samples) -> tuple[_SampledPasses, A
     uv = chart.uv(points.along, steps[line])
     start = np.searchsorted(line, np.arange(len(steps) + 1)).astype(np.int64)
     joined = np.diff(points.interval, prepend=-1) == 0
-    owner, ends = samples.owner(uv), np.flatnonzero(~joined | ~np.append(joined[1:], False))
-    some = ((np.arange(_END_ROWS) + 0.5) / _END_ROWS * len(steps)).astype(int)
+    begins = ~joined
+    is_last = ~np.append(joined[1:], False)
+    ends = np.flatnonzero(begins | is_last)
+    share = (np.arange(_END_ROWS) + 0.5) / _END_ROWS
+    some = (share * len(steps)).astype(int)
     chosen = ends[np.isin(line[ends], some)]
-    place = np.column_stack([points.along / (a1 - a0), steps[line] / (s1 - s0)])
+    owner = samples.owner(uv)
     if len(chosen):
+        along = points.along / (a1 - a0)
+        step = steps[line] / (s1 - s0)
+        place = np.column_stack([along, step])
         apart = ((place[ends, None] - place[chosen]) ** 2).sum(axis=2)
         owner[ends] = len(samples) + apart.argmin(axis=1)
-    geometry = contact_forms(face, uv, feed, True), np.ascontiguousarray(face.evaluate(uv).point)
-    return _SampledPasses(*geometry, start, joined, weight, owner), uv[chosen]
+    forms = contact_forms(face, uv, feed, True)
+    point = np.ascontiguousarray(face.evaluate(uv).point)
+    return _SampledPasses(forms, point, start, joined, weight, owner), uv[chosen]
 
 
 def _gauss(edges: Array) -> tuple[Array, Array]:
     """Places and weights of about `_ROWS` passes on panels of the step parameter."""
     share = np.diff(edges) / (edges[-1] - edges[0])
-    steps, weights = [], []
+    steps = []
+    weights = []
     for low, high, part in zip(edges[:-1], edges[1:], share, strict=True):
-        nodes, weight = np.polynomial.legendre.leggauss(max(3, int(np.ceil(_ROWS * part))))
-        steps.append((low + high) / 2 + (high - low) / 2 * nodes)
-        weights.append((high - low) / 2 * weight)
+        number = max(3, int(np.ceil(_ROWS * part)))
+        nodes, weight = np.polynomial.legendre.leggauss(number)
+        middle = (low + high) / 2
+        half = (high - low) / 2
+        steps.append(middle + half * nodes)
+        weights.append(half * weight)
     return np.concatenate(steps), np.concatenate(weights)
 
 
@@ -340,29 +375,47 @@ def sum_rows_numpy(table: _SampledPasses, axes: Array, ratio: Array, leans: Arra
     forms, points, start, joined, weight, owner = table
     cutter, scallop, greatest = sizes
     full = np.flatnonzero(np.diff(start) > 0)
+    begins = start[full]
     normal = forms[:, 6:9]
+    pace = np.maximum(forms[:, 12], 1e-300)
     for i, axis in enumerate(axes):
         half = np.empty((1, len(forms)))
         screen_numpy(forms, axis[None], cutter, scallop, half)
-        width = 2 * half[0] * ratio[i, owner] * lean_ratios(leans, forms[:, :3] @ axis, forms[:, 3:6] @ axis)
-        width = np.minimum(width, greatest / np.maximum(forms[:, 12], 1e-300))
-        width = np.sqrt(np.minimum.reduceat(_with_vertices(width**2, joined), start[full]))
-        nt = normal @ axis
-        across = np.sqrt(np.maximum(1 - nt**2, 0.0))
-        pull = np.where(across > 1e-12, cutter.flat / np.where(across > 1e-12, across, 1.0), 0.0)
-        tip = points + cutter.offset * normal + pull[:, None] * (normal - nt[:, None] * axis)
-        step = np.append(0.0, np.linalg.norm(np.diff(tip, axis=0), axis=1)) * joined
-        rate = weight[full] * np.where(width > 0, 1 / np.where(width > 0, width, 1.0), np.inf)
+        leaning = lean_ratios(leans, forms[:, :3] @ axis, forms[:, 3:6] @ axis)
+        width = 2 * half[0] * ratio[i, owner] * leaning
+        width = np.minimum(width, greatest / pace)
+        square = _with_vertices(width**2, joined)
+        narrowest = np.sqrt(np.minimum.reduceat(square, begins))
+        tip = _tips_numpy(cutter, points, normal, axis)
+        chords = np.linalg.norm(np.diff(tip, axis=0), axis=1)
+        step = np.append(0.0, chords) * joined
+        is_cut = narrowest > 0
+        strips = 1 / np.where(is_cut, narrowest, 1.0)
+        rate = weight[full] * np.where(is_cut, strips, np.inf)
         passes[i] = rate.sum()
-        length[i] = (rate * np.add.reduceat(step, start[full])).sum()
+        length[i] = (rate * np.add.reduceat(step, begins)).sum()
+
+
+def _tips_numpy(cutter: CutterParameters, points: Array, normal: Array, axis: Array) -> Array:
+    """Tool tips, less the constant shift along the axis, (n, 3); as `_tip`."""
+    nt = normal @ axis
+    across = np.sqrt(np.maximum(1 - nt**2, 0.0))
+    leans = across > 1e-12
+    pull = cutter.flat / np.where(leans, across, 1.0)
+    pull = np.where(leans, pull, 0.0)
+    outwards = normal - nt[:, None] * axis
+    return np.asarray(points + cutter.offset * normal + pull[:, None] * outwards)
 
 
 def _with_vertices(square: Array, joined: NDArray[np.bool_]) -> Array:
     """Local minima lowered to the vertex of the parabola through them and their neighbours."""
     out = square.copy()
-    before, here, after = square[:-2], square[1:-1], square[2:]
+    before = square[:-2]
+    here = square[1:-1]
+    after = square[2:]
     bend = before - 2 * here + after
-    low = joined[1:-1] & joined[2:] & (here <= before) & (here <= after) & (bend > 0)
+    within = joined[1:-1] & joined[2:]
+    low = within & (here <= before) & (here <= after) & (bend > 0)
     vertex = here - 0.125 * (after - before) ** 2 / np.where(bend > 0, bend, 1.0)
     out[1:-1] = np.where(low, np.maximum(vertex, 0.5 * here), here)
     return out

@@ -123,13 +123,17 @@ def complete_passes(placed: Layout, path: ToolPath, traced: Callable[[Layout], T
 
     **Properties**: 1. it never leaves more than the layout did.
     """
-    made, plain = FurtherPasses(placed, path, left(path)), path.length(Motion.CUT)
-    for _ in range(_ROUNDS if len(placed.pieces) else 0):
+    made = FurtherPasses(placed, path, left(path))
+    plain = max(path.length(Motion.CUT), np.finfo(float).tiny)
+    if not len(placed.pieces):
+        return made
+    for _ in range(_ROUNDS):
         further = add_passes_over_zones(made.placed, made.zones, reach)
         if further is made.placed:
             break
         path = traced(further)
-        again = FurtherPasses(further, path, left(path), path.length(Motion.CUT) / max(plain, np.finfo(float).tiny))
+        longer = path.length(Motion.CUT) / plain
+        again = FurtherPasses(further, path, left(path), longer)
         if again.left >= made.left:
             break
         made = again
@@ -166,34 +170,43 @@ def add_passes_over_zones(placed: Layout, zones: Sequence[Zone], reach: Reach | 
 
 def _aim_at_zone(placed: Layout, zone: Zone, reach: Reach | None) -> _Aim | None:
     """What is to be cut of a zone; None of one that lies at walls."""
-    chart, cut = placed.chart, placed.cut
+    chart = placed.chart
+    cut = placed.cut
     assert isinstance(chart, PassChart)
     piece = chart.face.trimmed(zone.loops)
     uv = _centres(piece)
-    if not len(uv) or (reach is not None and reach(uv).mean() < _STANDING):
+    if not len(uv):
+        return None
+    if reach is not None and reach(uv).mean() < _STANDING:
         return None
     d = piece.evaluate(uv)
     height = cut.allowance + FACTOR * cut.scallop
-    return _Aim(replace(chart, face=piece).bounds, chart.places(uv), d.point + height * piece.normal(uv),
-                np.linalg.norm(np.cross(d.su, d.sv), axis=1))
+    bounds = replace(chart, face=piece).bounds
+    raised = d.point + height * piece.normal(uv)
+    area = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    return _Aim(bounds, chart.places(uv), raised, area)
 
 
 def _over(placed: Layout, aim: _Aim, reach: Reach | None) -> list[Array]:
     """Pieces (k, 3) of each further pass over one zone."""
-    chart, cut = placed.chart, placed.cut
+    chart = placed.chart
+    cut = placed.cut
     along = aim.places[:, 0]
     run_out = _run_out(chart, cut, aim.places)
     tried = _try_passes(chart, cut, aim.bounds, run_out, reach)
     cuts = _cuts(chart, cut, tried, aim)
-    found, left = [], np.ones(len(aim.area), dtype=bool)
+    found = []
+    left = np.ones(len(aim.area), dtype=bool)
     for _ in range(_PASSES):
         gain = cuts[:, left] @ aim.area[left]
         best = int(np.argmax(gain))
         if gain[best] <= _WORTH * aim.area.sum():
             break
-        own, here = tried.pieces[tried.owner == best], along[cuts[best] & left]
+        here = along[cuts[best] & left]
+        own = tried.pieces[tried.owner == best]
         own[:, :2] = np.clip(own[:, :2], here.min() - run_out, here.max() + run_out)
-        found.append(own[own[:, 1] > own[:, 0]])
+        is_left = own[:, 1] > own[:, 0]
+        found.append(own[is_left])
         left &= ~cuts[best]
     return found
 
@@ -202,8 +215,8 @@ def _centres(piece: Face) -> Array:
     """Centres of cells of a zone, (n, 2), the finer the fewer of them lie in it."""
     uv = np.empty((0, 2))
     for doubled in range(_DOUBLED + 1):
-        count = _CELLS << doubled
-        uv = piece.grid(count, count)
+        cells = _CELLS << doubled
+        uv = piece.grid(cells, cells)
         if len(uv) >= _ENOUGH:
             break
     return uv
@@ -211,7 +224,9 @@ def _centres(piece: Face) -> Array:
 
 def _run_out(chart: Chart, cut: Cut, places: Array) -> float:
     """How far the cutter reaches along the passes at scallop height in a zone, in the along parameter."""
-    reach = chart.run_outs(cut, *places[:: max(len(places) // 16, 1)].T)
+    stride = max(len(places) // 16, 1)
+    along, step = places[::stride].T
+    reach = chart.run_outs(cut, along, step)
     good = reach[np.isfinite(reach)]
     return _RUN_OUT * float(good.max(initial=0.0))
 
@@ -220,24 +235,39 @@ def _try_passes(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float
                 reach: Reach | None) -> _Passes:
     """Passes at steps in and beside a zone, over all of its length as far as the cutter may stand there."""
     a0, a1, s0, s1 = bounds
-    along = np.linspace(a0, a1, 7)
-    halves = limit_half_widths(chart, cut, along, np.full(7, (s0 + s1) / 2))
-    good = halves[np.isfinite(halves) & (halves > 0)]
-    half = float(np.median(good)) if len(good) else (s1 - s0) / 2
-    count = int(np.clip(np.ceil(_IN_HALF * (s1 - s0 + 2 * half) / half), _FEWEST, _MOST))
-    steps = np.linspace(s0 - half, s1 + half, count)
-    low, high = a0 - run_out, a1 + run_out
-    found = Intervals(np.arange(count), np.full(count, low), np.full(count, high))
+    half = _usual_half_width(chart, cut, bounds)
+    wanted = np.ceil(_IN_HALF * (s1 - s0 + 2 * half) / half)
+    number = int(np.clip(wanted, _FEWEST, _MOST))
+    steps = np.linspace(s0 - half, s1 + half, number)
+    low = a0 - run_out
+    high = a1 + run_out
+    found = Intervals(np.arange(number), np.full(number, low), np.full(number, high))
     if reach is not None:
-        apart, exact = sampling(extents(chart)[0], chart.bounds[1] - chart.bounds[0], cut)
-        found = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])),
-                                 min((high - low) / _ASKED, apart), exact)
+        begin, end, _, _ = chart.bounds
+        length, _ = extents(chart)
+        apart, exact = sampling(length, end - begin, cut)
+        apart = min((high - low) / _ASKED, apart)
+        found = filter_intervals(found, lambda line, place: reach(chart.uv(place, steps[line])), apart, exact)
     some = found.high - found.low > 1e-9 * (high - low)
-    pieces, owner = np.column_stack([found.low, found.high, steps[found.line]])[some], found.line[some]
+    pieces = np.column_stack([found.low, found.high, steps[found.line]])[some]
+    owner = found.line[some]
     if isinstance(chart, PlaneChart):
         there = chart.are_found(pieces)
-        pieces, owner = pieces[there], owner[there]
+        pieces = pieces[there]
+        owner = owner[there]
     return _Passes(steps, pieces, owner)
+
+
+def _usual_half_width(chart: Chart, cut: Cut, bounds: tuple[float, float, float, float]) -> float:
+    """Half width of strips in the middle of a zone, in the step parameter; half of the zone's where there is none."""
+    a0, a1, s0, s1 = bounds
+    along = np.linspace(a0, a1, 7)
+    middle = np.full(7, (s0 + s1) / 2)
+    halves = limit_half_widths(chart, cut, along, middle)
+    good = halves[np.isfinite(halves) & (halves > 0)]
+    if not len(good):
+        return (s1 - s0) / 2
+    return float(np.median(good))
 
 
 def _cuts(chart: Chart, cut: Cut, tried: _Passes, aim: _Aim) -> Bools:
@@ -246,27 +276,31 @@ def _cuts(chart: Chart, cut: Cut, tried: _Passes, aim: _Aim) -> Bools:
     if not len(tried.pieces):
         return cuts
     piece, along = follow(chart, cut, tried.pieces, _CHORD * cut.scallop)
-    _, tips, _ = tip_points(chart, cut, along, tried.pieces[piece, 2])
+    step = tried.pieces[piece, 2]
+    _, tips, _ = tip_points(chart, cut, along, step)
     same = np.flatnonzero(piece[1:] == piece[:-1])
     owner = tried.owner[piece[same]]
     for k in np.unique(owner):
         own = same[owner == k]
-        cuts[k] = distance_to_removed(cut.tool, cut.axis, tips[own], tips[own + 1], aim.raised,
-                                      _FAR, 0.0) <= 0
+        distance = distance_to_removed(cut.tool, cut.axis, tips[own], tips[own + 1], aim.raised, _FAR, 0.0)
+        cuts[k] = distance <= 0
     return cuts
 
 
 def _with(placed: Layout, further: list[Array]) -> Layout:
     """A layout with further passes, each of which has pieces (k, 3), among its own in the order of their steps."""
-    spacing, chart = placed.spacing, placed.chart
-    steps = np.concatenate([spacing.steps, [pieces[0, 2] for pieces in further]])
+    spacing = placed.spacing
+    chart = placed.chart
     along = spacing.lines.measured
-    halves = [limit_half_widths(chart, placed.cut, along, np.full(len(along), pieces[0, 2])) for pieces in further]
+    new_steps = [pieces[0, 2] for pieces in further]
+    steps = np.concatenate([spacing.steps, new_steps])
+    new_halves = [limit_half_widths(chart, placed.cut, along, np.full(len(along), step)) for step in new_steps]
+    halves = np.concatenate([spacing.halves, new_halves])
     order = np.argsort(steps, kind="stable")
     place = np.argsort(order, kind="stable")
     own = [np.full(len(one), len(spacing.steps) + k) for k, one in enumerate(further)]
-    owner = np.concatenate([placed.owner, *own])
+    owner = place[np.concatenate([placed.owner, *own])]
     pieces = np.concatenate([placed.pieces, *further])
-    rows = np.lexsort((pieces[:, 0], place[owner]))
-    made = Spacing(steps[order], spacing.unused, spacing.lines, np.concatenate([spacing.halves, halves])[order])
-    return Layout(chart, placed.cut, made, pieces[rows], place[owner][rows], placed.traced)
+    rows = np.lexsort((pieces[:, 0], owner))
+    made = Spacing(steps[order], spacing.unused, spacing.lines, halves[order])
+    return Layout(chart, placed.cut, made, pieces[rows], owner[rows], placed.traced)

@@ -91,9 +91,13 @@ class Lines:
         would fall below zero, and no pass could follow.  Where they jump, as from a fillet to the plane beside it, it
         is not known on which side of the jump a line lies, and it takes the narrower one.
         """
-        one, other = halves[self.before], halves[self.before + 1]
-        narrower, wider = np.minimum(one, other), np.maximum(one, other)
-        found = np.clip(self.spread(halves), (1 - _BEYOND) * narrower, (1 + _BEYOND) * wider)
+        one = halves[self.before]
+        other = halves[self.before + 1]
+        narrower = np.minimum(one, other)
+        wider = np.maximum(one, other)
+        least = (1 - _BEYOND) * narrower
+        most = (1 + _BEYOND) * wider
+        found = np.clip(self.spread(halves), least, most)
         if self.exact:
             return np.asarray(found)
         jumps = (narrower > 0) & (wider > _JUMPS * narrower)
@@ -109,23 +113,30 @@ def lines(chart: Chart, cut: Cut) -> Lines:
     cut : Cut
     """
     _, _, s0, s1 = chart.bounds
-    count = int(np.clip(np.ceil(extents(chart)[0] / (PITCH * cut.tool.radius)), 1, _FINE))
+    wanted = np.ceil(extents(chart)[0] / (PITCH * cut.tool.radius))
+    number = int(np.clip(wanted, 1, _FINE))
     tried = _gaps(chart)
-    fine = _grid(chart, tried[-1], count)
+    fine = _grid(chart, tried[-1], number)
+    places = len(fine.measured)
     steps = s0 + (s1 - s0) * np.array([1, 3, 5]) / 6
-    along, step = (part.ravel() for part in np.meshgrid(fine.measured, steps, indexing="ij"))
-    exact = limit_half_widths(chart, cut, along, step).reshape(len(fine.measured), len(steps), 2)
-    found = table(columns(chart, fine.measured), len(fine.measured))[:, None]
-    counts = ((found[..., 0] <= steps[:, None]) & (found[..., 1] >= steps[:, None])).any(axis=2)
+    along, step = np.meshgrid(fine.measured, steps, indexing="ij")
+    halves = limit_half_widths(chart, cut, along.ravel(), step.ravel())
+    exact = halves.reshape(places, len(steps), 2)
+    material = table(columns(chart, fine.measured), places)[:, None]
+    begins_before = material[..., 0] <= steps[:, None]
+    ends_behind = material[..., 1] >= steps[:, None]
+    counts = (begins_before & ends_behind).any(axis=2)
     width = np.where(counts, exact.sum(axis=2), np.inf)
-    allowed = np.where(width <= _NARROW * width.min(axis=0), _INTERPOLATION, _ELSEWHERE)[..., None] * exact
+    is_narrow = width <= _NARROW * width.min(axis=0)
+    allowed = np.where(is_narrow, _INTERPOLATION, _ELSEWHERE)[..., None] * exact
     for gaps in tried[:-1]:
-        coarse = _grid(chart, gaps, count)
+        coarse = _grid(chart, gaps, number)
         where = np.searchsorted(fine.measured, coarse.measured)
         if not np.allclose(fine.measured[where], coarse.measured, rtol=1e-9, atol=0):
             continue
         guess = _interpolate(coarse.measured, exact[where], fine.measured)
-        if (np.abs(guess - exact) <= allowed)[counts].all():
+        good = np.abs(guess - exact) <= allowed
+        if good[counts].all():
             return coarse
     return replace(fine, exact=False)
 
@@ -134,42 +145,53 @@ def _gaps(chart: Chart) -> tuple[int, ...]:
     """Numbers of gaps to try: where passes cross narrow arms of a face, several measured lines have to cross each too.
     """
     a0, a1, s0, s1 = chart.bounds
-    pieces = rows(chart, s0 + (s1 - s0) * (np.arange(_ASKED) + 0.5) / _ASKED)
+    share = (np.arange(_ASKED) + 0.5) / _ASKED
+    pieces = rows(chart, s0 + (s1 - s0) * share)
     length = np.sort(pieces.high - pieces.low)
     if not len(length):
         return _GAPS
-    short = length[np.searchsorted(np.cumsum(length), _SHORTEST * length.sum())]
+    first_to_count = np.searchsorted(np.cumsum(length), _SHORTEST * length.sum())
+    short = length[first_to_count]
     enough = _CROSSED * (a1 - a0) / short
-    further = int(np.searchsorted(_NARROW_GAPS, enough)) + 1 if enough > _GAPS[-1] else 0
+    if not enough > _GAPS[-1]:
+        return _GAPS
+    further = int(np.searchsorted(_NARROW_GAPS, enough)) + 1
     return _GAPS + _NARROW_GAPS[:further]
 
 
-def _grid(chart: Chart, gaps: int, count: int) -> Lines:
+def _grid(chart: Chart, gaps: int, number: int) -> Lines:
     """About so many even gaps, with the surface's breaks among the measured lines, and about so many lines in all."""
     a0, a1, _, _ = chart.bounds
     inner = chart.breaks[0]
     even = np.linspace(a0, a1, gaps + 1)
-    apart = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf) > 1e-9 * (a1 - a0)
+    to_break = np.abs(even[:, None] - inner).min(axis=1, initial=np.inf)
+    apart = to_break > 1e-9 * (a1 - a0)
     measured = np.sort(np.concatenate([even[apart], inner]))
-    between = max(count // len(measured), 2)
+    between = max(number // len(measured), 2)
     share = np.arange(between) / between
-    along = np.append((measured[:-1, None] + np.diff(measured)[:, None] * share).ravel(), measured[-1])
-    return Lines(measured, along, _before(measured, along), *_stencil(measured, along))
+    gap = np.diff(measured)
+    along = measured[:-1, None] + gap[:, None] * share
+    along = np.append(along.ravel(), measured[-1])
+    index, weight = _stencil(measured, along)
+    return Lines(measured, along, _before(measured, along), index, weight)
 
 
 def _before(nodes: Array, places: Array) -> NDArray[np.intp]:
     """The node before each place; the last but one behind the last."""
-    return np.clip(np.searchsorted(nodes, places, side="right") - 1, 0, len(nodes) - 2)
+    before = np.searchsorted(nodes, places, side="right") - 1
+    return np.clip(before, 0, len(nodes) - 2)
 
 
 def _stencil(nodes: Array, places: Array) -> tuple[NDArray[np.intp], Array]:
     """Four nodes around each place, and the weights of the cubic through them."""
-    index = np.clip(_before(nodes, places) - 1, 0, len(nodes) - 4)[:, None] + np.arange(4)
+    first = np.clip(_before(nodes, places) - 1, 0, len(nodes) - 4)
+    index = first[:, None] + np.arange(4)
     four = nodes[index]
     weight = np.ones((len(places), 4))
     for k in range(4):
+        own = four[:, k]
         for other in set(range(4)) - {k}:
-            weight[:, k] *= (places - four[:, other]) / (four[:, k] - four[:, other])
+            weight[:, k] *= (places - four[:, other]) / (own - four[:, other])
     return index, weight
 
 
@@ -202,8 +224,13 @@ class Spacing:
 def _root(function: Callable[[float], float], guess: float, sign: float, tolerance: float) -> float:
     """Place where a function of slope near `sign` vanishes, or jumps past zero, from the side on which it is positive.
     """
-    place, value, slope = guess, function(guess), sign
-    above, below, width, last = None, None, np.inf, np.inf
+    place = guess
+    value = function(guess)
+    slope = sign
+    above: float | None = None
+    below: float | None = None
+    width = np.inf
+    last = np.inf
     for _ in range(_TRIED):
         if 0 <= value <= tolerance:
             return place
@@ -213,17 +240,22 @@ def _root(function: Callable[[float], float], guess: float, sign: float, toleran
             below = place
         new = place + (0.5 * tolerance - value) / slope
         if above is not None and below is not None:
-            before, width = width, abs(above - below)
+            before = width
+            width = abs(above - below)
             if width <= _JUMP * tolerance:
                 return above
-            slow = width > _HALF * before and abs(value) > _HALF * last
-            if slow or not min(above, below) < new < max(above, below):
+            is_slow = width > _HALF * before and abs(value) > _HALF * last
+            is_inside = min(above, below) < new < max(above, below)
+            if is_slow or not is_inside:
                 new = (above + below) / 2
-        step, last = new - place, abs(value)
+        step = new - place
+        last = abs(value)
         after = function(new)
         if step:
-            slope = sign * min(max(sign * (after - value) / step, 0.3), 3.0)
-        place, value = new, after
+            rate = sign * (after - value) / step
+            slope = sign * min(max(rate, 0.3), 3.0)
+        place = new
+        value = after
     return place if above is None or value >= 0 else above
 
 
@@ -244,13 +276,16 @@ class _Strips:
     """
 
     def __init__(self, chart: Chart, cut: Cut, across: Lines, material: Array) -> None:
-        self.chart, self.cut, self.across = chart, cut, across
+        _, _, s0, s1 = chart.bounds
+        scale = extents(chart)[1]
+        self.chart = chart
+        self.cut = cut
+        self.across = across
         self._material = material[np.searchsorted(across.along, across.measured)]
         self._step = np.nan
-        _, _, s0, s1 = chart.bounds
-        self._far = _NEAR * cut.tool.radius * (s1 - s0) / extents(chart)[1]
+        self._far = _NEAR * cut.tool.radius * (s1 - s0) / scale
         self._needed = np.arange(len(across.measured))
-        self._least_advance = _STUCK * _LEAST * cut.scallop * (s1 - s0) / extents(chart)[1]
+        self._least_advance = _STUCK * _LEAST * cut.scallop * (s1 - s0) / scale
         self.measured: Array = np.empty((0, 2))
         self.halves: Array = np.empty((0, 2))
 
@@ -264,7 +299,8 @@ class _Strips:
         step : float
             About where the pass will be.
         """
-        near = np.asarray(front <= max(step, float(front.min())) + self._far)
+        place = max(step, float(front.min()))
+        near = np.asarray(front <= place + self._far)
         self._watch(near)
         return near
 
@@ -276,31 +312,39 @@ class _Strips:
         material : (m, k, 2) array
         step : float
         """
-        low, high = material[..., 0] - self._far, material[..., 1] + self._far
-        self._watch(np.asarray(((low <= step) & (high >= step)).any(axis=1)))
+        low = material[..., 0] - self._far
+        high = material[..., 1] + self._far
+        is_near = (low <= step) & (high >= step)
+        self._watch(np.asarray(is_near.any(axis=1)))
 
     def _watch(self, near: Bools) -> None:
+        watched = near if near.any() else np.ones_like(near)
         needed = np.zeros(len(self.across.measured), dtype=bool)
-        needed[self.across.index[near if near.any() else np.ones_like(near)]] = True
+        needed[self.across.index[watched]] = True
         needed[1:] |= needed[:-1]
         needed[:-1] |= needed[1:]
-        self._needed, self._step = np.flatnonzero(needed), np.nan
+        self._needed = np.flatnonzero(needed)
+        self._step = np.nan
 
     def at(self, step: float) -> Array:
         """Half widths (m, 2) at one step parameter, on all lines."""
-        if step != self._step:
-            along = self.across.measured[self._needed]
-            self.measured = np.zeros((len(self.across.measured), 2))
-            found = limit_half_widths(self.chart, self.cut, along, np.full(len(along), step))
-            some = self._material[self._needed]
-            beside = np.asarray(~((some[..., 0] <= step) & (some[..., 1] >= step)).any(axis=1))
-            self.measured[self._needed] = _borrow(found, beside)
-            self._step, self.halves = step, self.across.spread_widths(self.measured)
+        if step == self._step:
+            return self.halves
+        along = self.across.measured[self._needed]
+        found = limit_half_widths(self.chart, self.cut, along, np.full(len(along), step))
+        some = self._material[self._needed]
+        holds = (some[..., 0] <= step) & (some[..., 1] >= step)
+        beside = np.asarray(~holds.any(axis=1))
+        self.measured = np.zeros((len(self.across.measured), 2))
+        self.measured[self._needed] = _borrow(found, beside)
+        self._step = step
+        self.halves = self.across.spread_widths(self.measured)
         return self.halves
 
     def check(self, cutting: Bools) -> None:
         """Refuse the last place asked for if a line on which it has to cut has no strip."""
-        good = np.asarray((np.isfinite(self.measured) & (self.measured > 0)).all(axis=1))
+        has_strip = np.isfinite(self.measured) & (self.measured > 0)
+        good = np.asarray(has_strip.all(axis=1))
         if good.all():
             return
         used = np.zeros(len(good), dtype=bool)
@@ -320,27 +364,33 @@ class _Strips:
         steps : sequence of float
             Places of the passes before.
         """
-        none = bool(steps) and not place > steps[-1]
-        if none or (len(steps) >= _STUCK and place - steps[-_STUCK] < self._least_advance):
-            least = int(self._needed[np.nan_to_num(self.measured[self._needed]).min(axis=1).argmin()])
+        stands = bool(steps) and not place > steps[-1]
+        creeps = len(steps) >= _STUCK and place - steps[-_STUCK] < self._least_advance
+        if stands or creeps:
+            narrowest = np.nan_to_num(self.measured[self._needed]).min(axis=1)
+            least = int(self._needed[narrowest.argmin()])
             raise InvalidInput(f"passes do not advance on {self._place(least)}: their lines meet there, as in a pole, "
                                "or strips are next to nothing; cut along the other parameter")
 
     def _place(self, row: int) -> str:
         """A measured line at the last place asked for, in words."""
-        u, v = self.chart.uv(self.across.measured[[row]], np.array([self._step]))[0] + 0.0
+        along = self.across.measured[[row]]
+        u, v = self.chart.uv(along, np.array([self._step]))[0] + 0.0
         return f"face {self.chart.face.label} at u {u:.4g}, v {v:.4g}"
 
 
 def _borrow(halves: Array, beside: Bools) -> Array:
     """Half widths (n, 2) of neighbouring lines, those beside the material that have none replaced by their neighbours'.
     """
-    none = ~(np.isfinite(halves) & (halves > 0)).all(axis=1)
-    empty, good = np.flatnonzero(none & beside), np.flatnonzero(~none)
+    has_strip = np.isfinite(halves) & (halves > 0)
+    none = ~has_strip.all(axis=1)
+    empty = np.flatnonzero(none & beside)
+    good = np.flatnonzero(~none)
     if not len(empty) or not len(good):
         return halves
     place = np.searchsorted(good, empty)
-    before, after = good[np.maximum(place - 1, 0)], good[np.minimum(place, len(good) - 1)]
+    before = good[np.maximum(place - 1, 0)]
+    after = good[np.minimum(place, len(good) - 1)]
     found = halves.copy()
     found[empty] = np.minimum(halves[before], halves[after])
     return found

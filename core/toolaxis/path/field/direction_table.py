@@ -59,13 +59,16 @@ class DirectionFunction(NamedTuple):
             Of twice the angle, (n,) each.
         """
         c, s = double
-        square = self.form[:, 0] + self.form[:, 1] * c + self.form[:, 2] * s
+        constant, of_cosine, of_sine = self.form.T
+        square = constant + of_cosine * c + of_sine * s
         value = 0.5 * np.log(square) + self.cosine[:, 0]
-        rate = (self.form[:, 2] * c - self.form[:, 1] * s) / square
-        x, y = np.ones(len(c)), np.zeros(len(c))
+        rate = (of_sine * c - of_cosine * s) / square
+        x = np.ones(len(c))
+        y = np.zeros(len(c))
         for m in range(1, self.cosine.shape[1]):
             x, y = x * c - y * s, y * c + x * s
-            a, b = self.cosine[:, m], self.sine[:, m]
+            a = self.cosine[:, m]
+            b = self.sine[:, m]
             value += a * x + b * y
             rate += 2 * m * (b * x - a * y)
         return value, rate
@@ -79,8 +82,10 @@ class DirectionFunction(NamedTuple):
         """
         m = np.arange(self.cosine.shape[1])
         turns = 2 * m[:, None] * angles
-        return np.asarray(0.5 * np.log(self.form @ _degree_two(angles)) + self.cosine @ np.cos(turns)
-                          + self.sine @ np.sin(turns))
+        square = self.form @ _degree_two(angles)
+        cosines = self.cosine @ np.cos(turns)
+        sines = self.sine @ np.sin(turns)
+        return np.asarray(0.5 * np.log(square) + cosines + sines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +132,8 @@ class DirectionTable:
         no bound: strips of finite height vary across, and contacts beside the face help.
         """
         angles = np.arange(_TRIED) * np.pi / _TRIED
-        best = (self.tip.over(angles) - self.width.over(angles)).min(axis=1)
+        price = self.tip.over(angles) - self.width.over(angles)
+        best = price.min(axis=1)
         return float(self.area @ np.exp(best))
 
 
@@ -162,19 +168,26 @@ def tabulate_directions(face: Face, cut: Cut, count: int, *, only_inside: bool =
     uv = even_places(face, count)
     area = areas_of_places(face, uv, count)
     if only_inside:
-        uv, area = uv[area > 0], area[area > 0]
+        inside = area > 0
+        uv = uv[inside]
+        area = area[inside]
     directions, harmonics = (_DIRECTIONS, _HARMONICS) if cut.tool.flat_radius > 0 else _OF_BALL
     angles = np.arange(directions) * np.pi / directions
     frame = feed_frame(face, uv)
-    halves = strip_width(face, cut.tool, np.repeat(uv, directions, axis=0), cut.axis, cut.scallop,
-                         feeds_in(frame, angles), cut.allowance)
-    width = np.where((halves > 0).all(axis=1), halves.sum(axis=1), 0.0).reshape(len(uv), directions)
+    _, _, metric = frame
+    every_uv = np.repeat(uv, directions, axis=0)
+    feeds = feeds_in(frame, angles)
+    halves = strip_width(face, cut.tool, every_uv, cut.axis, cut.scallop, feeds, cut.allowance)
+    is_cut = (halves > 0).all(axis=1)
+    width = np.where(is_cut, halves.sum(axis=1), 0.0).reshape(len(uv), directions)
     width = np.minimum(width, cut.greatest_step_over)
     widest = width.max(axis=1)
-    least = np.maximum(_NARROW * widest, _NARROWEST * cut.scallop)[:, None]
-    return DirectionTable(face, uv, count, area, frame[2], _fit(np.maximum(width, least), angles, harmonics),
-                          _fit(_tip_ways(face, cut, uv, angles), angles, harmonics),
-                          bool((widest[area > 0] > _NARROWEST * cut.scallop).all()))
+    narrowest = _NARROWEST * cut.scallop
+    least = np.maximum(_NARROW * widest, narrowest)[:, None]
+    widths = _fit(np.maximum(width, least), angles, harmonics)
+    ways = _fit(_tip_ways(face, cut, uv, angles), angles, harmonics)
+    has_strip = widest[area > 0] > narrowest
+    return DirectionTable(face, uv, count, area, metric, widths, ways, bool(has_strip.all()))
 
 
 def areas_of_places(face: Face, uv: Array, count: int) -> Array:
@@ -195,17 +208,23 @@ def areas_of_places(face: Face, uv: Array, count: int) -> Array:
     share = np.ones(count)
     share[[0, -1]] = 0.5
     cell = np.outer(share, share).ravel() * (u1 - u0) * (v1 - v0) / (count - 1) ** 2
-    area = np.where(inside, np.linalg.norm(np.cross(d.su, d.sv), axis=1) * cell, 0.0)
+    stretch = np.linalg.norm(np.cross(d.su, d.sv), axis=1)
+    area = np.where(inside, stretch * cell, 0.0)
     return np.asarray(area * (face.area / area.sum()))
 
 
 def _check_open(face: Face) -> None:
     u0, u1, v0, v1 = face.bounds
     share = np.linspace(0.0, 1.0, 5)
-    u, v = u0 + (u1 - u0) * share, v0 + (v1 - v0) * share
-    for name, low, high in (("u", np.column_stack([np.full(5, u0), v]), np.column_stack([np.full(5, u1), v])),
-                            ("v", np.column_stack([u, np.full(5, v0)]), np.column_stack([u, np.full(5, v1)]))):
-        apart = np.linalg.norm(face.evaluate(low).point - face.evaluate(high).point, axis=1)
+    u = u0 + (u1 - u0) * share
+    v = v0 + (v1 - v0) * share
+    at_u0 = np.column_stack([np.full(5, u0), v])
+    at_u1 = np.column_stack([np.full(5, u1), v])
+    at_v0 = np.column_stack([u, np.full(5, v0)])
+    at_v1 = np.column_stack([u, np.full(5, v1)])
+    for name, low, high in (("u", at_u0, at_u1), ("v", at_v0, at_v1)):
+        way = face.evaluate(low).point - face.evaluate(high).point
+        apart = np.linalg.norm(way, axis=1)
         if (apart <= _MEET * face.diagonal).all():
             raise UnsupportedGeometry(f"face {face.label} is closed in {name}: passes in a field need a face that is "
                                       f"open both ways; use iso-parametric passes, or {DIVIDE}")
@@ -221,7 +240,9 @@ def even_places(face: Face, count: int) -> Array:
         Each way.
     """
     u0, u1, v0, v1 = face.bounds
-    grid = np.meshgrid(np.linspace(u0, u1, count), np.linspace(v0, v1, count), indexing="ij")
+    u = np.linspace(u0, u1, count)
+    v = np.linspace(v0, v1, count)
+    grid = np.meshgrid(u, v, indexing="ij")
     return np.stack(grid, axis=-1).reshape(-1, 2)
 
 
@@ -238,19 +259,23 @@ def feed_frame(face: Face, uv: Array) -> tuple[Array, Array, Array]:
     UnsupportedGeometry
         Where a place has no two directions, as a pole.
     """
-    d, normal = face.evaluate(uv), face.normal(uv)
+    d = face.evaluate(uv)
+    normal = face.normal(uv)
     size = np.linalg.norm(d.su, axis=1)
     first = d.su / np.maximum(size, np.finfo(float).tiny)[:, None]
     second = np.cross(normal, first)
-    second *= np.where(dot(second, d.sv) < 0, -1.0, 1.0)[:, None]
-    metric = np.column_stack([size, dot(first, d.sv), dot(second, d.sv)])
+    sense = np.where(dot(second, d.sv) < 0, -1.0, 1.0)
+    second *= sense[:, None]
+    along = dot(first, d.sv)
+    across = dot(second, d.sv)
     u0, u1, v0, v1 = face.bounds
-    poor = np.flatnonzero(np.minimum(size, metric[:, 2]) * max(u1 - u0, v1 - v0) <= _POLE * face.diagonal)
+    slower = np.minimum(size, across)
+    poor = np.flatnonzero(slower * max(u1 - u0, v1 - v0) <= _POLE * face.diagonal)
     if len(poor):
         u, v = uv[poor[0]]
         raise UnsupportedGeometry(f"face {face.label} has no two directions at u {u:.4g}, v {v:.4g}, as in a pole: "
                                   "passes in a field do not go there; use iso-parametric passes")
-    return first, second, metric
+    return first, second, np.column_stack([size, along, across])
 
 
 def feeds_in(frame: tuple[Array, Array, Array], angles: Array) -> Array:
@@ -264,24 +289,31 @@ def feeds_in(frame: tuple[Array, Array, Array], angles: Array) -> Array:
         From the first direction of the frame towards the second.
     """
     first, second, _ = frame
-    feed = np.cos(angles)[:, None] * second[:, None] - np.sin(angles)[:, None] * first[:, None]
+    cosine = np.cos(angles)[:, None]
+    sine = np.sin(angles)[:, None]
+    feed = cosine * second[:, None] - sine * first[:, None]
     return np.asarray(feed.reshape(-1, 3))
 
 
 def _tip_ways(face: Face, cut: Cut, uv: Array, angles: Array) -> Array:
     """Way of the tip per way of the contact along passes, (n, k)."""
-    metric = feed_frame(face, uv)[2]
+    _, _, metric = feed_frame(face, uv)
     u0, u1, v0, v1 = face.bounds
     rates = []
     for shift in np.diag([_STEP * (u1 - u0), _STEP * (v1 - v0)]):
-        ends = [place(face, cut.tool, uv + sign * shift, cut.axis, cut.allowance) for sign in (1, -1)]
-        rates.append((ends[0] - ends[1]) / (2 * shift.sum()))
-    along = rates[0] / metric[:, :1]
-    across = (rates[1] - metric[:, 1:2] * along) / metric[:, 2:]
-    way = np.cos(angles)[:, None] * across[:, None] - np.sin(angles)[:, None] * along[:, None]
+        ahead = place(face, cut.tool, uv + shift, cut.axis, cut.allowance)
+        behind = place(face, cut.tool, uv - shift, cut.axis, cut.allowance)
+        rates.append((ahead - behind) / (2 * shift.sum()))
+    by_u, by_v = rates
+    along = by_u / metric[:, :1]
+    across = (by_v - metric[:, 1:2] * along) / metric[:, 2:]
+    cosine = np.cos(angles)[:, None]
+    sine = np.sin(angles)[:, None]
+    way = cosine * across[:, None] - sine * along[:, None]
     long = np.linalg.norm(way, axis=2)
     # On a ripple much smaller than the cutter its tip goes a thousand times as far in one direction as in another.
-    return np.asarray(np.maximum(long, _NARROWEST * np.maximum(long.max(axis=1, keepdims=True), 1.0)))
+    longest = np.maximum(long.max(axis=1, keepdims=True), 1.0)
+    return np.asarray(np.maximum(long, _NARROWEST * longest))
 
 
 def _degree_two(angles: Array) -> Array:
@@ -295,11 +327,15 @@ def _fit(values: Array, angles: Array, harmonics: int) -> DirectionFunction:
     terms = _degree_two(angles)
     weight = 1 / square**2  # errors count by their share of the value
     normal = np.einsum("ak,bk,nk->nab", terms, terms, weight)
-    form = np.linalg.solve(normal, np.einsum("ak,nk->na", terms, 1 / square)[..., None])[..., 0]
+    right = np.einsum("ak,nk->na", terms, 1 / square)
+    form = np.linalg.solve(normal, right[..., None])[..., 0]
     swing = np.hypot(form[:, 1], form[:, 2])
     least = _POSITIVE * square.min(axis=1)
     form[:, 0] = np.maximum(form[:, 0], 2 * least)
-    form[:, 1:] *= np.minimum(1.0, (form[:, 0] - least) / np.maximum(swing, np.finfo(float).tiny))[:, None]
+    # Where the form would fall below the least value, its swing is made smaller.
+    room = form[:, 0] - least
+    share = room / np.maximum(swing, np.finfo(float).tiny)
+    form[:, 1:] *= np.minimum(1.0, share)[:, None]
     left = np.log(values) - 0.5 * np.log(form @ terms)
     turns = np.fft.rfft(left, axis=1)[:, :harmonics + 1] / values.shape[1]
     turns[:, 1:] *= 2

@@ -79,25 +79,32 @@ class _Basis(NamedTuple):
         """The basis of cubic fields with knots along u and v at places along them."""
         found = []
         for own, some in zip(knots, places, strict=True):
-            rows, first = basis_derivatives_numpy(own, 3, some)
+            derivatives, first = basis_derivatives_numpy(own, 3, some)
+            row = np.arange(len(some))[:, None]
+            column = first[:, None] + np.arange(4)
             for order in (0, 1):
                 full = np.zeros((len(some), len(own) - 4))
-                full[np.arange(len(some))[:, None], first[:, None] + np.arange(4)] = rows[:, order]
+                full[row, column] = derivatives[:, order]
                 found.append(full)
         return _Basis(*found)
 
     def values(self, coefficients: Array) -> Array:
         """The field, (nu nv,)."""
-        return np.asarray(self.of_u @ coefficients @ self.of_v.T).ravel()
+        lattice = self.of_u @ coefficients @ self.of_v.T
+        return np.asarray(lattice).ravel()
 
     def rates(self, coefficients: Array) -> tuple[Array, Array]:
         """Its rates with u and v, (nu nv,) each."""
-        return ((self.by_u @ coefficients @ self.of_v.T).ravel(), (self.of_u @ coefficients @ self.by_v.T).ravel())
+        by_u = self.by_u @ coefficients @ self.of_v.T
+        by_v = self.of_u @ coefficients @ self.by_v.T
+        return by_u.ravel(), by_v.ravel()
 
     def pull_back(self, by_u: Array, by_v: Array) -> Array:
         """What rates of a number with the rates of the field, (nu nv,) each, mean for the coefficients."""
         shape = len(self.of_u), len(self.of_v)
-        return np.asarray(self.by_u.T @ by_u.reshape(shape) @ self.of_v + self.of_u.T @ by_v.reshape(shape) @ self.by_v)
+        from_u = self.by_u.T @ by_u.reshape(shape) @ self.of_v
+        from_v = self.of_u.T @ by_v.reshape(shape) @ self.by_v
+        return np.asarray(from_u + from_v)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +133,11 @@ class FieldProblem:
     @cached_property
     def basis(self) -> "_Basis":
         """At the table's places."""
-        uv = self.table.uv.reshape(self.table.count, self.table.count, 2)
-        return _Basis.at(self.knots, (uv[:, 0, 0], uv[0, :, 1]))
+        number = self.table.count
+        uv = self.table.uv.reshape(number, number, 2)
+        along_u = uv[:, 0, 0]
+        along_v = uv[0, :, 1]
+        return _Basis.at(self.knots, (along_u, along_v))
 
     @cached_property
     def around(self) -> "_Basis":
@@ -139,7 +149,9 @@ class FieldProblem:
     def sizes(self) -> tuple[float, float]:
         """Mean mm of the face per unit of u and of v."""
         weight = self.table.area / self.whole
-        return float(weight @ self.table.metric[:, 0]), float(weight @ np.hypot(*self.table.metric[:, 1:].T))
+        size_u, shear, height = self.table.metric.T
+        size_v = np.hypot(shear, height)
+        return float(weight @ size_u), float(weight @ size_v)
 
     @cached_property
     def whole(self) -> float:
@@ -148,10 +160,10 @@ class FieldProblem:
 
     def straight(self, slope: float) -> Array:
         """Coefficients of a field whose passes all lean by a slope, about, against the parameter along them."""
-        size = self.sizes
-        middles = [_middles(knots) for knots in self.knots]
-        rate = (slope, 1.0) if self.across == 1 else (1.0, slope)
-        return np.asarray(size[0] * rate[0] * middles[0][:, None] + size[1] * rate[1] * middles[1])
+        size_u, size_v = self.sizes
+        middles_u, middles_v = (_middles(knots) for knots in self.knots)
+        rate_u, rate_v = (slope, 1.0) if self.across == 1 else (1.0, slope)
+        return np.asarray(size_u * rate_u * middles_u[:, None] + size_v * rate_v * middles_v)
 
     def gradient(self, coefficients: Array) -> tuple[Array, Array]:
         """Components of the field's gradient along Su and across it, 1/mm, (n,) each."""
@@ -170,15 +182,18 @@ class FieldProblem:
         """Logarithm of spacing over strip width where the field grows by one, and its rates with the gradient."""
         square = first**2 + second**2
         width, turn = self.table.width.at(_double(first, second, square))
-        change = np.stack([-first + turn * second, -second - turn * first]) / square
-        return -0.5 * np.log(square) - width, change[0], change[1]
+        by_first = (-first + turn * second) / square
+        by_second = (-second - turn * first) / square
+        return -0.5 * np.log(square) - width, by_first, by_second
 
     def length(self, first: Array, second: Array) -> tuple[Array, Array, Array]:
         """Way of the tip at each place where passes lie one apart in the field, mm, and its rates with the gradient."""
         square = first**2 + second**2
         tip, turn = self.table.tip.at(_double(first, second, square))
         cell = np.sqrt(square) * np.exp(tip) * self.table.area
-        return cell, cell * (first - turn * second) / square, cell * (second + turn * first) / square
+        by_first = cell * (first - turn * second) / square
+        by_second = cell * (second + turn * first) / square
+        return cell, by_first, by_second
 
     def cost(self, given: Array, power: float) -> tuple[float, Array]:
         """Logarithm of the cutting length, with what keeps the field a good one, and its gradient.
@@ -195,18 +210,25 @@ class FieldProblem:
         total = cell.sum()
         narrow, narrow_1, narrow_2 = self.narrowness(first, second)
         top = narrow[self.table.area > 0].max()
-        share = np.exp(np.minimum(power * (narrow - top), 0.0)) * self.table.area
+        # A mean of powers over the face stands for the narrowest place.
+        exponent = np.minimum(power * (narrow - top), 0.0)
+        share = np.exp(exponent) * self.table.area
         mean = share.sum()
         share /= mean
         value = np.log(total) + top + np.log(mean / self.whole) / power
-        slope = self._pull_back(cell_1 / total + share * narrow_1, cell_2 / total + share * narrow_2)
+        by_first = cell_1 / total + share * narrow_1
+        by_second = cell_2 / total + share * narrow_2
+        slope = self._pull_back(by_first, by_second)
         steep, by_steep = self._steepness(coefficients)
         bend, by_bend = self._bend(coefficients)
         return float(value + steep + bend), (slope + by_steep + by_bend).ravel()
 
     def _steepness(self, coefficients: Array) -> tuple[float, Array]:
         """What is charged where passes lean too much against the parameter along them, and its rates."""
-        first, second = (rate / size for rate, size in zip(self.around.rates(coefficients), self.sizes, strict=True))
+        size_u, size_v = self.sizes
+        rate_u, rate_v = self.around.rates(coefficients)
+        first = rate_u / size_u
+        second = rate_v / size_v
         along, across = (first, second) if self.across == 1 else (second, first)
         square = first**2 + second**2
         over = np.maximum(np.abs(along) - _STEEPEST * across, 0.0)
@@ -215,7 +237,8 @@ class FieldProblem:
         by_along = 2 * (weight * over * np.sign(along) - value * along) / square
         by_across = -2 * (weight * over * _STEEPEST + value * across) / square
         by_first, by_second = (by_along, by_across) if self.across == 1 else (by_across, by_along)
-        return float(value.sum()), self.around.pull_back(by_first / self.sizes[0], by_second / self.sizes[1])
+        rates = self.around.pull_back(by_first / size_u, by_second / size_v)
+        return float(value.sum()), rates
 
     @cached_property
     def _differences(self) -> tuple[Array, Array]:
@@ -227,34 +250,43 @@ class FieldProblem:
     def _bend(self, coefficients: Array) -> tuple[float, Array]:
         """Weight of second against first differences of coefficients, and its gradient."""
         once, twice = self._differences
-        rise, turn = (once @ coefficients, coefficients @ once.T), (twice @ coefficients, coefficients @ twice.T)
+        rise_u = once @ coefficients
+        rise_v = coefficients @ once.T
+        turn_u = twice @ coefficients
+        turn_v = coefficients @ twice.T
         twist = once @ coefficients @ once.T
-        bent = float((turn[0] ** 2).sum() + (turn[1] ** 2).sum() + 2 * (twist**2).sum())
-        risen = float((rise[0] ** 2).sum() + (rise[1] ** 2).sum())
-        by_bent = 2 * (twice.T @ turn[0] + turn[1] @ twice) + 4 * once.T @ twist @ once
-        by_risen = 2 * (once.T @ rise[0] + rise[1] @ once)
+        bent = float((turn_u**2).sum() + (turn_v**2).sum() + 2 * (twist**2).sum())
+        risen = float((rise_u**2).sum() + (rise_v**2).sum())
+        by_bent = 2 * (twice.T @ turn_u + turn_v @ twice) + 4 * once.T @ twist @ once
+        by_risen = 2 * (once.T @ rise_u + rise_v @ once)
         weight = _BEND * self.count**2 / risen
         return weight * bent, weight * (by_bent - bent / risen * by_risen)
 
     def descend(self, coefficients: Array, powers: tuple[float, ...], rounds: int) -> tuple[float, Array]:
         """Cost and coefficients after so many rounds downhill with each power."""
-        value, found = np.inf, coefficients.ravel()
+        value = np.inf
+        found = coefficients.ravel()
         for power in powers:
-            value, found = descend(partial(self.cost, power=power), found, rounds)
+            cost = partial(self.cost, power=power)
+            value, found = descend(cost, found, rounds)
         return value, found.reshape(self.count, self.count)
 
     def mix_growing(self, coefficients: Array) -> Array:
         """Coefficients mixed with those of a straight field, as little as makes the field grow across all passes."""
-        ends = [np.linspace(knots[0], knots[-1], _KEPT) for knots in self.knots]
-        lattice = _Basis.at(self.knots, (ends[0], ends[1]))
+        along_u, along_v = (np.linspace(knots[0], knots[-1], _KEPT) for knots in self.knots)
+        lattice = _Basis.at(self.knots, (along_u, along_v))
         straight = self.straight(0.0)
-        rate, even = (lattice.rates(one)[self.across] for one in (coefficients, straight))
+        rate = lattice.rates(coefficients)[self.across]
+        even = lattice.rates(straight)[self.across]
         mean = float(rate.mean())
         if mean <= 0:
             return straight
-        straight, even = straight * (mean / even.mean()), even * (mean / even.mean())
+        as_steep = mean / even.mean()
+        straight = straight * as_steep
+        even = even * as_steep
         short = np.maximum(_LEAST_RATE * mean - rate, 0.0)
-        share = float((short / np.where(short > 0, even - rate, 1.0)).max())
+        gain = np.where(short > 0, even - rate, 1.0)
+        share = float((short / gain).max())
         return np.asarray((1 - share) * coefficients + share * straight)
 
     def _run_outs(self, coefficients: Array) -> Array:
@@ -263,24 +295,29 @@ class FieldProblem:
         A pass goes on for half the width of a strip across it, or, where it ends aslant, until its strip is cut up to
         the border.  Ends at holes and trimmed borders are reckoned as on the border of the range.
         """
-        count, (u0, u1, v0, v1) = self.table.count, self.table.face.bounds
+        number = self.table.count
+        u0, u1, v0, v1 = self.table.face.bounds
         first, second = self.gradient(coefficients)
         square = first**2 + second**2
-        double = _double(first, second, square)
-        ahead = 0.5 * np.exp(self.table.width.at((-double[0], -double[1]))[0])
-        aside = 0.5 * np.exp(self.table.width.at(double)[0])
-        tip = np.exp(self.table.tip.at(double)[0])
-        rates = self.basis.rates(coefficients)
-        total = np.zeros((count, count))
-        along_v = self.table.metric[:, 1:] / np.hypot(*self.table.metric[:, 1:].T)[:, None]
+        cosine, sine = _double(first, second, square)
+        log_ahead, _ = self.table.width.at((-cosine, -sine))
+        log_aside, _ = self.table.width.at((cosine, sine))
+        log_tip, _ = self.table.tip.at((cosine, sine))
+        ahead = 0.5 * np.exp(log_ahead)
+        aside = 0.5 * np.exp(log_aside)
+        tip = np.exp(log_tip)
+        by_u, by_v = self.basis.rates(coefficients)
+        of_v = self.table.metric[:, 1:]
+        along_v = of_v / np.hypot(*of_v.T)[:, None]
         along_u = np.broadcast_to(np.array([1.0, 0.0]), along_v.shape)
-        for along, rate, span, ends in ((along_u, rates[0], u1 - u0, np.s_[:, [0, -1]]),
-                                        (along_v, rates[1], v1 - v0, np.s_[[0, -1], :])):
+        total = np.zeros((number, number))
+        for along, rate, span, ends in ((along_u, by_u, u1 - u0, np.s_[:, [0, -1]]),
+                                        (along_v, by_v, v1 - v0, np.s_[[0, -1], :])):
             across = np.abs(first * along[:, 1] - second * along[:, 0]) / np.sqrt(square)
-            sine = np.sqrt(np.maximum(1 - across**2, _ASLANT**2))
-            way = np.maximum(ahead, aside * across / sine) * tip
-            number = np.abs(rate) * span / (count - 1)
-            total[ends] += (number * way).reshape(count, count)[ends]
+            aslant = np.sqrt(np.maximum(1 - across**2, _ASLANT**2))
+            way = np.maximum(ahead, aside * across / aslant) * tip
+            passes = np.abs(rate) * span / (number - 1)
+            total[ends] += (passes * way).reshape(number, number)[ends]
         return total.ravel()
 
     def build(self, coefficients: Array) -> PassField:
@@ -290,20 +327,26 @@ class FieldProblem:
         is what the narrowest place there says.
         """
         first, second = self.gradient(coefficients)
-        cell = self.length(first, second)[0] + self._run_outs(coefficients)
-        narrow = np.exp(self.narrowness(first, second)[0])
+        inner, _, _ = self.length(first, second)
+        cell = inner + self._run_outs(coefficients)
+        log_narrow, _, _ = self.narrowness(first, second)
+        narrow = np.exp(log_narrow)
         value = self.basis.values(coefficients)
         inside = self.table.area > 0
-        low, high = value[inside].min(), value[inside].max()
-        level = np.clip(((value - low) / max(high - low, 1e-300) * _LEVELS).astype(int), 0, _LEVELS - 1)
+        low = value[inside].min()
+        rise = value[inside].max() - low
+        not_flat = max(rise, 1e-300)
+        level = ((value - low) / not_flat * _LEVELS).astype(int)
+        level = np.clip(level, 0, _LEVELS - 1)
         rate = np.zeros(_LEVELS)
         np.maximum.at(rate, level[inside], narrow[inside])
         length = float(np.bincount(level, weights=cell, minlength=_LEVELS) @ rate)
-        passes = float(rate.mean() * (high - low))
-        scale = passes / max(high - low, 1e-300)
+        passes = float(rate.mean() * rise)
+        scale = passes / not_flat
         points = np.zeros((self.count, self.count, 3))
         points[..., 2] = scale * coefficients
-        return PassField(NurbsSurface.from_points(points, (3, 3), self.knots), length, passes)
+        surface = NurbsSurface.from_points(points, (3, 3), self.knots)
+        return PassField(surface, length, passes)
 
 
 def find_field(table: DirectionTable, across: int, count: int = 14, rounds: int = 60) -> PassField:
@@ -331,8 +374,9 @@ def find_field(table: DirectionTable, across: int, count: int = 14, rounds: int 
     """
     problem = FieldProblem(table, count, across)
     tried = [problem.descend(problem.straight(slope), _FIRST_POWERS, rounds // 2) for slope in _STARTS]
-    best = min(tried, key=lambda one: one[0])
-    return problem.build(problem.mix_growing(problem.descend(best[1], _LAST_POWERS, rounds)[1]))
+    _, best = min(tried, key=lambda one: one[0])
+    _, found = problem.descend(best, _LAST_POWERS, rounds)
+    return problem.build(problem.mix_growing(found))
 
 
 def _middles(knots: Array) -> Array:
@@ -342,4 +386,6 @@ def _middles(knots: Array) -> Array:
 
 def _double(first: Array, second: Array, square: Array) -> tuple[Array, Array]:
     """Cosine and sine of twice the angle of a direction."""
-    return (first**2 - second**2) / square, 2 * first * second / square
+    cosine = (first**2 - second**2) / square
+    sine = 2 * first * second / square
+    return cosine, sine
