@@ -46,22 +46,29 @@ def constrained_least_squares(rows: ArrayLike, right: ArrayLike, equal: tuple[Ar
     >>> constrained_least_squares([[1, 0], [0, 1]], [2, 2], at_least=([[-1, -1]], [-2])).round(12).tolist()
     [1.0, 1.0]
     """
-    a, b = np.atleast_2d(np.asarray(rows, dtype=float)), np.asarray(right, dtype=float)
+    a = np.atleast_2d(np.asarray(rows, dtype=float))
+    b = np.asarray(right, dtype=float)
     first, null = _solve_equations(equal, a.shape[1])
     if null.shape[1] == 0:
         _check(first, at_least)
         return first
-    reduced, rest = a @ null, b - a @ first
+    reduced = a @ null
+    rest = b - a @ first
     if at_least is None:
-        return np.asarray(first + null @ np.linalg.lstsq(reduced, rest, rcond=_RANK)[0])
+        free, *_ = np.linalg.lstsq(reduced, rest, rcond=_RANK)
+        return np.asarray(first + null @ free)
     g, h = (np.asarray(part, dtype=float) for part in at_least)
     q, r = np.linalg.qr(reduced)
-    size = np.abs(np.diag(r)) if r.shape[0] == r.shape[1] else np.zeros(1)
+    is_square = r.shape[0] == r.shape[1]
+    size = np.abs(np.diag(r)) if is_square else np.zeros(1)
     if size.min() <= _RANK * size.max():
         raise InvalidInput("several solutions are least: add rows that tell them apart")
     target = q.T @ rest
+    # With y = R^-1 (z + Q^T rest) the sum of squares is |z|^2, and G x >= h is turned z >= what is left of h.
     turned = np.linalg.solve(r.T, (g @ null).T).T
-    y = np.linalg.solve(r, _least_distance(turned, h - g @ first - turned @ target) + target)
+    left = h - g @ first - turned @ target
+    z = _least_distance(turned, left)
+    y = np.linalg.solve(r, z + target)
     return np.asarray(first + null @ y)
 
 
@@ -69,11 +76,16 @@ def _solve_equations(equal: tuple[ArrayLike, ArrayLike] | None, n: int) -> tuple
     """The shortest solution of equations, and an orthonormal basis of what is left free, (n, f)."""
     if equal is None:
         return np.zeros(n), np.eye(n)
-    c, d = np.atleast_2d(np.asarray(equal[0], dtype=float)), np.asarray(equal[1], dtype=float)
+    c = np.atleast_2d(np.asarray(equal[0], dtype=float))
+    d = np.asarray(equal[1], dtype=float)
     left, size, basis = np.linalg.svd(c, full_matrices=True)
     rank = int((size > _RANK * size.max(initial=0.0)).sum())
-    first = basis[:rank].T @ ((left[:, :rank].T @ d) / size[:rank])
-    first = first + basis[:rank].T @ ((left[:, :rank].T @ (d - c @ first)) / size[:rank])
+    range_left = left[:, :rank].T
+    range_basis = basis[:rank].T
+    first = range_basis @ ((range_left @ d) / size[:rank])
+    # A second step takes away what rounding has left.
+    missing = d - c @ first
+    first = first + range_basis @ ((range_left @ missing) / size[:rank])
     off = np.abs(c @ first - d)
     if len(d) and off.max() > _AGREE * max(1.0, float(np.abs(d).max())):
         raise InvalidInput(f"equation {int(off.argmax())} misses by {off.max():.3g}: the equations contradict each "
@@ -96,17 +108,20 @@ def _least_distance(g: Array, h: Array) -> Array:
     from scipy.optimize import nnls
 
     size = np.linalg.norm(g, axis=1)
-    empty = size <= _RANK * max(size.max(initial=0.0), np.finfo(float).tiny)
+    longest = max(size.max(initial=0.0), np.finfo(float).tiny)
+    empty = size <= _RANK * longest
     if (h[empty] > _AGREE).any():
-        raise InvalidInput(f"inequality {int(np.flatnonzero(empty & (h > _AGREE))[0])} can be met by nothing")
+        unmet = np.flatnonzero(empty & (h > _AGREE))
+        raise InvalidInput(f"inequality {int(unmet[0])} can be met by nothing")
     kept = ~empty
-    g, h = g[kept] / size[kept, None], h[kept] / size[kept]
+    g = g[kept] / size[kept, None]
+    h = h[kept] / size[kept]
     if not len(h) or h.max() <= 0:
         return np.zeros(g.shape[1])
     scale = float(h.max())
     table = np.vstack([g.T, h / scale])
     wanted = np.append(np.zeros(g.shape[1]), 1.0)
-    dual = nnls(table, wanted, maxiter=50 * table.shape[1])[0]
+    dual, _ = nnls(table, wanted, maxiter=50 * table.shape[1])
     rest = table @ dual - wanted
     if np.linalg.norm(rest) <= _APART or rest[-1] >= 0:
         raise InvalidInput("the inequalities contradict each other: none but a wider one can be met")
@@ -116,5 +131,9 @@ def _least_distance(g: Array, h: Array) -> Array:
 
 def _polish_active(g: Array, h: Array, z: Array, active: NDArray[np.bool_]) -> Array:
     """The same from its active rows as equations, where that misses the others by less."""
-    better = np.linalg.lstsq(g[active], h[active], rcond=_RANK)[0]
-    return np.asarray(better if (h - g @ better).max() <= max(float((h - g @ z).max()), 0.0) + 1e-12 else z)
+    better, *_ = np.linalg.lstsq(g[active], h[active], rcond=_RANK)
+    missed = (h - g @ better).max()
+    missed_before = max(float((h - g @ z).max()), 0.0)
+    if missed <= missed_before + 1e-12:
+        return np.asarray(better)
+    return z

@@ -81,10 +81,11 @@ def proven(ledger: AxisTable, row: int) -> bool:
 def _stands(ledger: AxisTable, row: int, contacts: CheckPoints) -> bool:
     ledger.closer += 1
     found = closer(ledger.feasibility, ledger.axes[row], contacts)
-    if found.reason != FREE:
+    stands = found.reason == FREE
+    if not stands:
         ledger.forbid(row, found.reason, found.amount)
         ledger.heed(found)
-    return found.reason == FREE
+    return stands
 
 
 def count_row(ledger: AxisTable, row: int, feed: int | None = None) -> CountedAxis:
@@ -97,13 +98,17 @@ def count_row(ledger: AxisTable, row: int, feed: int | None = None) -> CountedAx
     feed : int, optional
         The one that is known to be better.
     """
-    axis, unreached = ledger.axes[row], float(ledger.unreached[row])
+    axis = ledger.axes[row]
+    unreached = float(ledger.unreached[row])
     values = ledger.values[row]
-    feeds = [int(values.argmin()) if feed is None else feed]
-    if feed is None and values.max() < 1.04 * values.min():
+    if feed is not None:
+        feeds = [feed]
+    elif values.max() < 1.04 * values.min():
         feeds = [0, 1]
-    return min((CountedAxis(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds),
-               key=lambda c: c.value)
+    else:
+        feeds = [int(values.argmin())]
+    counted = [CountedAxis(axis, k, *ledger.count(axis, k, unreached), unreached) for k in feeds]
+    return min(counted, key=lambda one: one.value)
 
 
 @dataclass
@@ -128,26 +133,30 @@ class _LocalSearch:
         scale = None
         if np.isfinite(rough.length) and np.isfinite(start.length):
             scale = Count(start.passes / rough.passes, start.length / rough.length)
-        return _LocalSearch(ledger, start, [(start.axis, _ratio(ledger, start))],
-                            ledger.worth.worthwhile(start.value), scale)
+        known = [(start.axis, _ratio(ledger, start))]
+        return _LocalSearch(ledger, start, known, ledger.worth.worthwhile(start.value), scale)
 
     def count(self, row: int) -> CountedAxis:
         """The count of a row, told from fewer places where that is possible."""
-        ledger, feed = self.ledger, self.best.feed
-        axis, unreached = ledger.axes[row], float(ledger.unreached[row])
+        ledger = self.ledger
+        feed = self.best.feed
+        axis = ledger.axes[row]
+        unreached = float(ledger.unreached[row])
         if self.scale is not None:
             rough = ledger.worth.weighed(axis, FEEDS[feed])
             if np.isfinite(rough.length):
                 found = Count(rough.passes * self.scale.passes, rough.length * self.scale.length)
-                return CountedAxis(axis, feed, ledger.charged(axis, feed, unreached, found), *found, unreached)
+                value = ledger.charged(axis, feed, unreached, found)
+                return CountedAxis(axis, feed, value, found.passes, found.length, unreached)
         return count_row(ledger, row, feed)
 
     def counted_exactly(self, start: CountedAxis) -> CountedAxis:
         """The end of the walk with its exact count, or its start where that is no worse."""
-        if self.scale is None or self.best is start:
-            return self.best
-        ledger, best = self.ledger, self.best
-        exact = CountedAxis(best.axis, best.feed, *ledger.count(best.axis, best.feed, best.unreached), best.unreached)
+        best = self.best
+        if self.scale is None or best is start:
+            return best
+        counted = self.ledger.count(best.axis, best.feed, best.unreached)
+        exact = CountedAxis(best.axis, best.feed, *counted, best.unreached)
         return exact if exact.value < start.value else start
 
     def hopes(self, rows: slice, step: float) -> Array:
@@ -156,40 +165,51 @@ class _LocalSearch:
         Screening knows no width beyond the second-order limit of curvature, though the exact cutter may reach some way
         further: in a ring, what stands opposite is mirrored there.
         """
-        values, axes = self.ledger.values[rows, self.best.feed], self.ledger.axes[rows]
+        values = self.ledger.values[rows, self.best.feed]
+        axes = self.ledger.axes[rows]
         told = np.asarray(values * self._ratios(axes, step))
         known = np.isfinite(told)
         hope = np.full(len(told), np.inf)
         hope[known] = told[known] / self.best.value  # that value is inf where no strip can be laid at the best axis
         opposite = np.roll(hope, len(hope) // 2)
         mirrored = np.where(np.isfinite(opposite), 2 - opposite, 1.0)
-        return np.where(np.isinf(hope) & (self.ledger.reason[rows] == FREE), mirrored, hope)
+        is_unseen = np.isinf(hope) & (self.ledger.reason[rows] == FREE)
+        return np.where(is_unseen, mirrored, hope)
 
     def _ratios(self, axes: Array, step: float) -> Array:
         """Exact over screening value at axes near the best one: its own, and a slope through those of others near."""
-        middle, own = self.best.axis, self.known[-1][1]
+        middle = self.best.axis
+        _, own = self.known[-1]
         x, y = perpendicular(middle)
         across = np.stack([x, y], axis=1) / np.sin(step)
         places = np.array([axis for axis, _ in self.known]) @ across
         off = np.array([ratio for _, ratio in self.known]) / own - 1
         near = np.linalg.norm(places, axis=1) <= _NEAR
-        slope = np.linalg.solve(places[near].T @ places[near] + _STIFF * np.eye(2), places[near].T @ off[near])
+        normal = places[near].T @ places[near] + _STIFF * np.eye(2)
+        slope = np.linalg.solve(normal, places[near].T @ off[near])
         return np.asarray(own * (1 + axes @ across @ slope))
 
     def better(self, rows: slice, hope: Array, step: float) -> bool:
         """Whether a row, in the order of what is hoped for, counts better than the best and is proven: then it is it.
         """
-        ledger, best = self.ledger, self.best
+        ledger = self.ledger
+        best = self.best
+        is_free = ledger.reason[rows] == FREE
         seen = np.isfinite(ledger.values[rows, best.feed])
-        promised = hope - np.where(seen, _DOUBT, _UNSEEN) * step
-        order = np.argsort(np.where(ledger.reason[rows] == FREE, hope, np.inf), kind="stable")[:_TRIED]
+        doubt = np.where(seen, _DOUBT, _UNSEEN)
+        promised = hope - doubt * step
+        best_first = np.argsort(np.where(is_free, hope, np.inf), kind="stable")
+        order = best_first[:_TRIED]
+        least_worthwhile = 1 - self.worthwhile
         for row, promise in zip(rows.start + order, promised[order], strict=True):
-            if ledger.reason[row] != FREE or not promise < 1 - self.worthwhile:
+            if ledger.reason[row] != FREE or not promise < least_worthwhile:
                 return False
             found = self.count(int(row))
             screened = float(ledger.values[row, best.feed])
-            ratio = found.value / screened if np.isfinite(screened) else self.known[-1][1]
-            if found.value < best.value * (1 - self.worthwhile) and proven(ledger, int(row)):
+            _, ratio = self.known[-1]
+            if np.isfinite(screened):
+                ratio = found.value / screened
+            if found.value < best.value * least_worthwhile and proven(ledger, int(row)):
                 self.best = found
                 self.known.append((found.axis, ratio))
                 return True
@@ -215,14 +235,16 @@ def polish(ledger: AxisTable, start: CountedAxis, step: float, finest: float = F
     finest : float
         Last one, rad.
     """
-    walk, turn = _LocalSearch.of(ledger, start), 0.0
+    walk = _LocalSearch.of(ledger, start)
+    turn = 0.0
     while step >= finest:
         turn += 2.399963
         rows = ledger.look(ring(walk.best.axis, step, turn, _RING))
         hope = walk.hopes(rows, step)
         if walk.better(rows, hope, step):
             continue
-        lowest = _lowest(walk.best.axis, ledger.axes[rows], walk.hopes(rows, step), step, walk.worthwhile)
+        renewed = walk.hopes(rows, step)
+        lowest = _lowest(walk.best.axis, ledger.axes[rows], renewed, step, walk.worthwhile)
         if lowest is not None:
             rows = ledger.look(lowest[None])
             if walk.better(rows, walk.hopes(rows, step), step):
@@ -241,21 +263,30 @@ def _lowest(middle: Array, axes: Array, hope: Array, step: float, worthwhile: fl
         return None
     x, y = perpendicular(middle)
     p = np.stack([axes @ x, axes @ y], axis=1) / np.sin(step)
-    table = np.column_stack([p, p[:, 0] ** 2 / 2, p[:, 0] * p[:, 1], p[:, 1] ** 2 / 2])
+    px, py = p.T
+    table = np.column_stack([p, px**2 / 2, px * py, py**2 / 2])
     gx, gy, xx, xy, yy = np.linalg.lstsq(table, hope - 1, rcond=None)[0]
+    slope = [gx, gy]
     values, vectors = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
     if values[0] <= 0:
         return None
-    move = -vectors @ ((vectors.T @ [gx, gy]) / values)
+    move = -vectors @ ((vectors.T @ slope) / values)
     size = float(np.linalg.norm(move))
     move *= min(1.0, 2.0 / max(size, 1e-12))
-    gain = -(move @ [gx, gy] + 0.5 * move @ [xx * move[0] + xy * move[1], xy * move[0] + yy * move[1]])
-    return None if gain < worthwhile else unit(middle + np.tan(step) * (move[0] * x + move[1] * y))
+    bend = [xx * move[0] + xy * move[1], xy * move[0] + yy * move[1]]
+    gain = -(move @ slope + 0.5 * move @ bend)
+    if gain < worthwhile:
+        return None
+    aside = move[0] * x + move[1] * y
+    return unit(middle + np.tan(step) * aside)
 
 
 def _ratio(ledger: AxisTable, one: CountedAxis) -> float:
     """Exact value of a candidate over its screening value; 1 where either is unknown, as no strip can be laid there."""
     found = ledger.worth.screen(one.axis[None])
     charge = ledger.worth.charge(float(found.length[0].min()), one.unreached)
-    screened = float(ledger.worth.values(one.axis[None], found)[0, one.feed]) * charge
-    return one.value / screened if np.isfinite(screened) and np.isfinite(one.value) else 1.0
+    plain = float(ledger.worth.values(one.axis[None], found)[0, one.feed])
+    screened = plain * charge
+    if np.isfinite(screened) and np.isfinite(one.value):
+        return one.value / screened
+    return 1.0

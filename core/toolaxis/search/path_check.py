@@ -95,16 +95,18 @@ class ProvenMotions:
         """
         rows = moves[:, :2].reshape(-1, 6)
         keys = _keys_of(rows)
+        known = len(self._keys)
         found = np.searchsorted(self._keys, keys)
-        there = np.flatnonzero(found < len(self._keys))
-        there = there[(self._rows[found[there]] == rows[there]).all(axis=1)]
-        new = _others(len(rows), there)
-        found[new] = len(self._keys) + np.arange(len(new))
+        there = np.flatnonzero(found < known)
+        is_same = (self._rows[found[there]] == rows[there]).all(axis=1)
+        new = _others(len(rows), there[is_same])
+        found[new] = known + np.arange(len(new))
         every = np.concatenate([self._keys, keys[new]])
         order = np.argsort(every, kind="stable")
+        nothing_proven = np.zeros(len(new), dtype=np.int64)
         self._keys = every[order]
         self._rows = np.concatenate([self._rows, rows[new]])[order]
-        self._proven = np.concatenate([self._proven, np.zeros(len(new), dtype=np.int64)])[order]
+        self._proven = np.concatenate([self._proven, nothing_proven])[order]
         place = np.empty(len(order), dtype=np.intp)
         place[order] = np.arange(len(order))
         return place[found]
@@ -126,7 +128,8 @@ class ProvenMotions:
         if not len(new):
             return new
         some = ask(new)
-        self._proven[places[new[_others(len(new), some)]]] |= 1 << number
+        kept = new[_others(len(new), some)]
+        self._proven[places[kept]] |= 1 << number
         return new[some]
 
     def count_new(self, places: NDArray[np.intp]) -> int:
@@ -151,15 +154,19 @@ class ProvenMotions:
         """
         new = self._unknown(places, _MEASURED)
         if len(new):
-            mine, before = ask(new), self.figures
-            clearance = {name: min(value, before.clearance.get(name, value)) for name, value in mine.clearance.items()}
+            mine = ask(new)
+            before = self.figures
+            clearance = {}
+            for name, value in mine.clearance.items():
+                clearance[name] = min(value, before.clearance.get(name, value))
             self.figures = PathCheck(None, max(mine.gouge, before.gouge), clearance)
             self._proven[places[new]] |= 1 << _MEASURED
         return self.figures
 
     def _unknown(self, places: NDArray[np.intp], bit: int) -> NDArray[np.intp]:
         """Rows of the motions of which something is not known."""
-        return np.flatnonzero((self._proven[places] >> bit) & 1 == 0)
+        known = (self._proven[places] >> bit) & 1
+        return np.flatnonzero(known == 0)
 
 
 def _others(count: int, rows: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -218,15 +225,22 @@ def prove(path: ToolPath, tool: Tool, groups: tuple[CheckSurfaces, ...], allowan
             return PathCheck(refused)
         allow(_ALLOWED * known.count_new(places))
     links = np.flatnonzero(path.kind[1:] == Motion.LINK)
-    witness, blocked = None, np.zeros(len(moves), dtype=bool)
+    witness: Violation | None = None
+    blocked = np.zeros(len(moves), dtype=bool)
     for number, group in enumerate(groups):
         progress.report("proof", number, 2 * len(groups))
-        rows = known.find_blocked(number, places,
-                                  lambda some: _find_blocked(tool, group, moves[some], group.required))  # noqa: B023
-        into = links[_find_blocked(tool, group, moves[links], group.required_on_links)] if group.stock > 0 else rows[:0]
+
+        def near_group(some: NDArray[np.intp], group: CheckSurfaces = group) -> NDArray[np.intp]:
+            return _find_blocked(tool, group, moves[some], group.required)
+
+        rows = known.find_blocked(number, places, near_group)
+        into = rows[:0]
+        if group.stock > 0:
+            into = links[_find_blocked(tool, group, moves[links], group.required_on_links)]
         if not len(rows) and not len(into):
             continue
-        blocked[rows], blocked[into] = True, True
+        blocked[rows] = True
+        blocked[into] = True
         if witness is None and len(rows):
             witness = worst_motion(tool, group, moves[rows], group.required, group.required)
         elif witness is None:
@@ -247,17 +261,22 @@ def _measure(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array, allowa
     for number, group in enumerate(groups):
         progress.report("proof", len(groups) + number, 2 * len(groups))
         if group.role != OTHER:
-            gouge = max(gouge, greatest_depth(tool, group, moves, allowance if group.role == SKIN else 0.0))
-        asked = tuple(c for c, name in enumerate(COMPONENTS) if name in has and (c > 0 or group.role == OTHER))
-        for c, value in _least(tool, group, moves, asked, most).items():
+            left = allowance if group.role == SKIN else 0.0
+            gouge = max(gouge, greatest_depth(tool, group, moves, left))
+        asked = [c for c, name in enumerate(COMPONENTS) if name in has]
+        if group.role != OTHER:
+            asked = [c for c in asked if c > 0]
+        for c, value in _least(tool, group, moves, tuple(asked), most).items():
             name = COMPONENTS[c]
-            clearance[name] = min(clearance.get(name, most), max(value, float(group.required[c])))
+            proven = max(value, float(group.required[c]))
+            clearance[name] = min(clearance.get(name, most), proven)
     return PathCheck(None, gouge, clearance)
 
 
 def _refuse_early(tool: Tool, groups: tuple[CheckSurfaces, ...], moves: Array) -> Violation | None:
     """The worst of motions spread over a long path, where so many of them break a limit that it will be refused."""
-    some = moves[::len(moves) // _SPREAD + 1]
+    stride = len(moves) // _SPREAD + 1
+    some = moves[::stride]
     for group in groups:
         rows = _find_blocked(tool, group, some, group.required)
         if len(rows) > _SURELY * FEW * len(some):
@@ -279,14 +298,17 @@ def greatest_depth(tool: Tool, group: CheckSurfaces, moves: Array, allowance: fl
     """
     spread = np.arange(0, len(moves), _STRIDE)
     order = np.concatenate([spread, _others(len(moves), spread)])
-    limit, cutter = float(group.required[0]), _only(group, (0,))
+    limit = float(group.required[0])
+    cutter = _only(group, (0,))
     nearest = allowance + 2 * FINE
     for first in range(0, len(order), _BATCH):
         if nearest <= limit:  # it is proven that none goes deeper
             break
         some = moves[order[first:first + _BATCH]]
-        nearest = float(lower_bounds(group.cells, tool, some, nearest, FINE, cutter).lower[:, 0].min())
-    return float(depth_from_distance(tool, np.array(max(nearest, limit)), allowance))
+        found = lower_bounds(group.cells, tool, some, nearest, FINE, cutter)
+        nearest = float(found.lower[:, 0].min())
+    distance = np.array(max(nearest, limit))
+    return float(depth_from_distance(tool, distance, allowance))
 
 
 def _only(group: CheckSurfaces, components: tuple[int, ...]) -> Array:
@@ -301,17 +323,22 @@ def _find_blocked(tool: Tool, group: CheckSurfaces, moves: Array, required: Arra
     if group.role == OTHER or np.isneginf(required[0]):
         return _find_together(tool, group, moves, required)
     # on its skin a cutter is too near to be told about so, shank and holder are not
-    others, cutter = np.array([-np.inf, *required[1:]]), np.array([required[0], -np.inf, -np.inf])
-    return np.union1d(_find_together(tool, group, moves, others), _find_singly(tool, group, moves, cutter))
+    others = np.array([-np.inf, *required[1:]])
+    cutter = np.array([required[0], -np.inf, -np.inf])
+    by_others = _find_together(tool, group, moves, others)
+    by_cutter = _find_singly(tool, group, moves, cutter)
+    return np.union1d(by_others, by_cutter)
 
 
 def _find_together(tool: Tool, group: CheckSurfaces, moves: Array, required: Array) -> NDArray[np.intp]:
     """The same, by balls around motions that follow each other first."""
     if np.isneginf(required).all():
         return np.empty(0, dtype=np.intp)
-    table, left = np.tile(required, (len(group.faces), 1)), np.arange(len(moves))
-    for count in _TOGETHER:
-        left = left[~_keep_together(tool, group, moves[left], table, count)]
+    table = np.tile(required, (len(group.faces), 1))
+    left = np.arange(len(moves))
+    for number in _TOGETHER:
+        kept = _keep_together(tool, group, moves[left], table, number)
+        left = left[~kept]
     return left[_find_singly(tool, group, moves[left], required)]
 
 
@@ -322,23 +349,28 @@ def _find_singly(tool: Tool, group: CheckSurfaces, moves: Array, required: Array
     return np.flatnonzero(found >= 0)
 
 
-def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, count: int) -> NDArray[np.bool_]:
+def _keep_together(tool: Tool, group: CheckSurfaces, moves: Array, table: Array, number: int) -> NDArray[np.bool_]:
     """Motions (n,) of which so many that follow each other keep distances (faces, 3), as a ball around them tells.
 
     A distance changes by no more than the tip moves.
     """
-    first = np.arange(0, len(moves), count)
+    first = np.arange(0, len(moves), number)
     if len(first) < 2:
         return np.zeros(len(moves), dtype=bool)
+    middle = moves[:, 0]
     reach = np.abs(moves[:, 1])
-    low = np.minimum.reduceat(moves[:, 0] - reach, first)
-    high = np.maximum.reduceat(moves[:, 0] + reach, first)
+    low = np.minimum.reduceat(middle - reach, first)
+    high = np.maximum.reduceat(middle + reach, first)
     radius = np.linalg.norm(high - low, axis=1) / 2
-    short = radius <= count * _EACH * tool.radius  # links are long
-    balls = np.stack([(low + high) / 2, np.zeros_like(low), moves[first, 2]], axis=1)[short]
+    short = radius <= number * _EACH * tool.radius  # links are long
+    standing = np.zeros_like(low)
+    balls = np.stack([(low + high) / 2, standing, moves[first, 2]], axis=1)
+    margin = radius[short].max(initial=0.0)
+    found = keeps_limits(group.cells, tool, balls[short], table + margin)
     kept = np.zeros(len(first), dtype=bool)
-    kept[short] = keeps_limits(group.cells, tool, balls, table + radius[short].max(initial=0.0)).blocked < 0
-    return np.repeat(kept, np.diff(np.append(first, len(moves))))
+    kept[short] = found.blocked < 0
+    of_each = np.diff(np.append(first, len(moves)))
+    return np.repeat(kept, of_each)
 
 
 def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation:
@@ -353,7 +385,8 @@ def link_into_stock(tool: Tool, group: CheckSurfaces, moves: Array) -> Violation
         At least one.
     """
     required = np.array([group.required_on_links[0], -np.inf, -np.inf])
-    found = worst_motion(tool, group, moves, required, np.maximum(required, 0.0))
+    cutoff = np.maximum(required, 0.0)
+    found = worst_motion(tool, group, moves, required, cutoff)
     which = f"face {found.label}" if found.label else "what stands around"
     at = f" at {place(found.point)}" if np.isfinite(found.point).all() else ""
     words = f"a rapid move is not proven to clear the stock of {group.stock:g} mm on {which}{at}"
@@ -380,33 +413,39 @@ def worst_motion(tool: Tool, group: CheckSurfaces, moves: Array, required: Array
     that the nearest face is named all the same.
     """
     fine = FINE if group.role != OTHER else COARSE
-    asked = np.array([name == "cutter" or name in tool.outlines for name in COMPONENTS]) & ~np.isneginf(required)
+    has = np.array([name == "cutter" or name in tool.outlines for name in COMPONENTS])
+    asked = has & ~np.isneginf(required)
     table = np.tile(np.where(asked, 0.0, -np.inf), (len(group.faces), 1))
     found = lower_bounds(group.cells, tool, moves, cutoff + 2 * fine, fine, table)
     amount = np.where(asked, required - found.lower, -np.inf)
-    i, c = (int(k) for k in np.unravel_index(int(np.argmax(round_significant(amount))), amount.shape))
+    worst = int(np.argmax(round_significant(amount)))
+    i, c = (int(k) for k in np.unravel_index(worst, amount.shape))
     if found.face[i, c] < 0:
-        found, i = lower_bounds(group.cells, tool, moves[[i]], _FAR, fine, table), 0
-    k = int(found.face[i, c])
+        found = lower_bounds(group.cells, tool, moves[[i]], _FAR, fine, table)
+        i = 0
+    distance = float(found.lower[i, c])
     missed = max(float(required[c] - found.lower[i, c]), 0.0)
-    code = GOUGE if group.role == SKIN and c == 0 else CUTTER + c
+    is_gouge = group.role == SKIN and c == 0
+    code = GOUGE if is_gouge else CUTTER + c
+    k = int(found.face[i, c])
     if k < 0:
         return Violation(code, missed)
-    return Violation(code, missed, group.faces[k].label, found.point[i, c], distance=float(found.lower[i, c]))
+    return Violation(code, missed, group.faces[k].label, found.point[i, c], distance=distance)
 
 
-def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float) -> dict[int,
-                                                                                                             float]:
+def _least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...],
+           most: float) -> dict[int, float]:
     """Least distance of components to a group over all motions, at most `_ROUGH` too small; `most` where it is more."""
     if not components:
         return {}
     best = np.full(3, most + _ROUGH)
     if len(moves) > _LONG:
-        some = moves[::len(moves) // _SPREAD + 1]
-        best = _bound_least(tool, group, some, components, best, _ROUGH) + _ROUGH
+        stride = len(moves) // _SPREAD + 1
+        best = _bound_least(tool, group, moves[::stride], components, best, _ROUGH) + _ROUGH
         table = _only(group, components) + best - _ROUGH
-        for count in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
-            moves = moves[~_keep_together(tool, group, moves, table, count)]
+        for number in _TOGETHER:  # what is farther away than the nearest of those tells nothing new
+            kept = _keep_together(tool, group, moves, table, number)
+            moves = moves[~kept]
     found = _bound_least(tool, group, moves, components, best, _ROUGH)
     return {c: float(found[c]) for c in components}
 
@@ -415,7 +454,8 @@ def _lowest_first(moves: Array) -> NDArray[np.intp]:
     """Motions in the order of their heights along the axis, (n,)."""
     if not len(moves):
         return np.empty(0, dtype=np.intp)
-    return np.argsort(round_significant(moves[:, 0] @ moves[0, 2]), kind="stable")
+    heights = moves[:, 0] @ moves[0, 2]
+    return np.argsort(round_significant(heights), kind="stable")
 
 
 def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tuple[int, ...], most: float | Array,
@@ -425,10 +465,12 @@ def _bound_least(tool: Tool, group: CheckSurfaces, moves: Array, components: tup
     Only what comes nearer than all before is told exactly: the lowest motions, which are likely to come near, are
     looked at first.  Those that are looked at together stay in the order of the path, as neighbours share a look.
     """
-    asked, best = _only(group, components), np.broadcast_to(np.asarray(most, dtype=float), 3)
+    asked = _only(group, components)
+    best = np.broadcast_to(np.asarray(most, dtype=float), 3)
     order = _lowest_first(moves)
     for first in range(0, len(moves), _BATCH):
-        some = moves[np.sort(order[first:first + _BATCH])]
-        least = lower_bounds(group.cells, tool, some, best, resolution, asked).lower.min(axis=0)
+        together = np.sort(order[first:first + _BATCH])
+        found = lower_bounds(group.cells, tool, moves[together], best, resolution, asked)
+        least = found.lower.min(axis=0)
         best = np.where(least < best - resolution, least, best)
     return np.asarray(best - resolution)

@@ -95,12 +95,16 @@ def edges_from_borders(faces: Sequence[Face], borders: Sequence[Border], smooth:
     points = _on_both_sides(by_number, borders, _points_at)
     edges = []
     for k, border in enumerate(borders):
-        first, second = by_number[border.faces[0]], by_number[border.faces[1]]
-        other = normals[k + len(borders)] * (1.0 if consistent(border, first, second) else -1.0)
-        kind, angle = _kind(border, border.left ^ first.flip, (normals[k], other), smooth)
-        if border.faces[0] == border.faces[1] and kind == "tangent":
+        one, other = border.faces
+        first = by_number[one]
+        second = by_number[other]
+        in_second = k + len(borders)
+        sense = 1.0 if consistent(border, first, second) else -1.0
+        both = (normals[k], normals[in_second] * sense)
+        kind, angle = _kind(border, border.left ^ first.flip, both, smooth)
+        if one == other and kind == "tangent":
             continue
-        gap, step = _mismatch(border.points, points[k] - points[k + len(borders)], (normals[k], other))
+        gap, step = _mismatch(border.points, points[k] - points[in_second], both)
         edges.append(Edge(border.faces, kind, border.points, angle, gap, step))
     return tuple(edges)
 
@@ -121,9 +125,12 @@ def _mismatch(curve: Array, apart: Array, normals: tuple[Array, Array]) -> tuple
     normals : tuple of (m, 3) arrays
         Of the first face and of the second one.
     """
+    first_normal, second_normal = normals
     across = _across(apart, curve)
-    first_over_second, second_over_first = dot(across, normals[1]), -dot(across, normals[0])
-    return np.linalg.norm(across, axis=1), np.stack([first_over_second, second_over_first], axis=1)
+    first_over_second = dot(across, second_normal)
+    second_over_first = -dot(across, first_normal)
+    step = np.stack([first_over_second, second_over_first], axis=1)
+    return np.linalg.norm(across, axis=1), step
 
 
 def consistent(border: Border, first: Face, second: Face) -> bool:
@@ -146,30 +153,37 @@ def gaps(faces: Sequence[Face], borders: Sequence[Border]) -> Array:
     faces : sequence of Face
     borders : sequence of Border
     """
-    points = _on_both_sides({face.number: face for face in faces}, borders, _points_at)
-    off = [np.linalg.norm(_across(side - border.points, border.points), axis=1).max()
-           for side, border in zip(points, [*borders, *borders], strict=True)]
-    return np.asarray(np.array(off).reshape(2, -1).max(axis=0))
+    by_number = {face.number: face for face in faces}
+    points = _on_both_sides(by_number, borders, _points_at)
+    worst = []
+    for side, border in zip(points, [*borders, *borders], strict=True):
+        across = _across(side - border.points, border.points)
+        worst.append(np.linalg.norm(across, axis=1).max())
+    of_both_sides = np.array(worst).reshape(2, -1)
+    return np.asarray(of_both_sides.max(axis=0))
 
 
 def _across(away: Array, curve: Array) -> Array:
     """Vectors at the points of a curve without their share along it."""
     along = np.gradient(curve, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True).clip(1e-300)
-    return np.asarray(away - dot(away, along)[:, None] * along)
+    share = dot(away, along)
+    return np.asarray(away - share[:, None] * along)
 
 
 def _on_both_sides(faces: dict[int, Face], borders: Sequence[Border],
                    what: Callable[[Face, Array], Array]) -> list[Array]:
     """Something (k, 3) along all borders in their first faces, then in their second, with one evaluation a face."""
-    sides = [(border.faces[0], border.first) for border in borders] + [(b.faces[1], b.second) for b in borders]
+    sides = [(border.faces[0], border.first) for border in borders]
+    sides += [(border.faces[1], border.second) for border in borders]
     result: list[Array] = [np.empty((0, 3))] * len(sides)
     members: dict[int, list[int]] = {}
     for k, (number, _) in enumerate(sides):
         members.setdefault(number, []).append(k)
     for number, rows in members.items():
-        values = what(faces[number], np.concatenate([sides[k][1] for k in rows]))
-        cuts = np.cumsum([len(sides[k][1]) for k in rows])[:-1]
+        places = [sides[k][1] for k in rows]
+        values = what(faces[number], np.concatenate(places))
+        cuts = np.cumsum([len(one) for one in places])[:-1]
         for k, part in zip(rows, np.split(values, cuts), strict=True):
             result[k] = part
     return result
@@ -178,14 +192,18 @@ def _on_both_sides(faces: dict[int, Face], borders: Sequence[Border],
 def _kind(border: Border, left: bool, normals: tuple[Array, Array], smooth: float) -> tuple[str, float]:
     one, other = normals
     along = np.gradient(border.points, axis=0)
-    sound = (np.linalg.norm(one, axis=1) > 0.5) & (np.linalg.norm(other, axis=1) > 0.5)
-    sound &= np.linalg.norm(along, axis=1) > 0
+    has_normals = (np.linalg.norm(one, axis=1) > 0.5) & (np.linalg.norm(other, axis=1) > 0.5)
+    sound = has_normals & (np.linalg.norm(along, axis=1) > 0)
     if not sound.any():
         return "tangent", 0.0
-    one, other, along = one[sound], other[sound], along[sound]
-    angle = angle_between(one, other)
-    if angle.max() <= smooth:
-        return "tangent", float(angle.max())
-    inward = (1.0 if left else -1.0) * np.cross(one, along)
+    one = one[sound]
+    other = other[sound]
+    along = along[sound]
+    angle = float(angle_between(one, other).max())
+    if angle <= smooth:
+        return "tangent", angle
+    sense = 1.0 if left else -1.0
+    inward = sense * np.cross(one, along)
     inward /= np.linalg.norm(inward, axis=1, keepdims=True).clip(1e-300)
-    return ("concave" if float(dot(inward, other).mean()) > KNIFE else "convex"), float(angle.max())
+    rise = float(dot(inward, other).mean())
+    return ("concave" if rise > KNIFE else "convex"), angle

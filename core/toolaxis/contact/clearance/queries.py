@@ -79,7 +79,9 @@ def segment_motions(tips: ArrayLike, axis: ArrayLike) -> Array:
         When shapes do not fit, numbers are not finite, or an axis is not a unit vector.
     """
     rows = as_rows(tips, 3, "tool tips")
-    return np.stack([(rows[1:] + rows[:-1]) / 2, (rows[1:] - rows[:-1]) / 2, _axes(axis, len(rows) - 1)], axis=1)
+    middle = (rows[1:] + rows[:-1]) / 2
+    half_way = (rows[1:] - rows[:-1]) / 2
+    return np.stack([middle, half_way, _axes(axis, len(middle))], axis=1)
 
 
 def _axes(axis: ArrayLike, count: int) -> Array:
@@ -112,8 +114,12 @@ def lower_bounds(cells: BoundingTree, tool: Tool, moves: Array, cutoff: ArrayLik
     required : (faces, 3) array, optional
         Only which pairs are left out (-inf) counts here.
     """
-    limits = np.zeros((len(cells.faces), 3)) if required is None else np.where(np.isneginf(required), -np.inf, 0.0)
-    return _run(cells, tool, moves, (limits, np.broadcast_to(np.asarray(cutoff, dtype=float), 3), resolution))
+    if required is None:
+        limits = np.zeros((len(cells.faces), 3))
+    else:
+        limits = np.where(np.isneginf(required), -np.inf, 0.0)
+    cutoffs = np.broadcast_to(np.asarray(cutoff, dtype=float), 3)
+    return _run(cells, tool, moves, limits, cutoffs, resolution)
 
 
 def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array) -> DistanceBounds:
@@ -128,31 +134,47 @@ def keeps_limits(cells: BoundingTree, tool: Tool, moves: Array, required: Array)
     required : (faces, 3) array
         Least signed distances, mm; -inf leaves a pair out.
     """
-    return _run(cells, tool, moves, (np.ascontiguousarray(required), np.full(3, np.inf), -1.0))
+    limits = np.ascontiguousarray(required)
+    everywhere = np.full(3, np.inf)
+    return _run(cells, tool, moves, limits, everywhere, -1.0)
 
 
-def _run(cells: BoundingTree, tool: Tool, moves: Array, ask: tuple[Array, Array, float]) -> DistanceBounds:
-    limits, cutoff, resolution = ask
-    pieces = tool.pieces
+def _run(cells: BoundingTree, tool: Tool, moves: Array, limits: Array, cutoff: Array,
+         resolution: float) -> DistanceBounds:
+    """Answers for all pieces of a tool that are asked for, some pieces at a time."""
     asked = np.asarray((limits > -np.inf).any(axis=0))
-    pieces = pieces[asked[pieces[:, 7].astype(int)]]
-    n = len(moves)
+    component = tool.pieces[:, 7].astype(int)
+    pieces = tool.pieces[asked[component]]
     relief = no_relief(len(cells.faces)) if cells.mismatch is None else cells.mismatch.plain
-    total = DistanceBounds(np.tile(cutoff, (n, 1)), np.full((n, 3), -1), np.zeros((n, 3, 3)), np.full(n, -1),
-                           np.zeros(n, int))
+    total = _nothing_near(len(moves), cutoff)
     for first in range(0, len(pieces), _PIECES_AT_ONCE):
         some = np.ascontiguousarray(pieces[first:first + _PIECES_AT_ONCE])
-        shape = (float(some[:, 4].min()), float(np.maximum(some[:, 0] + some[:, 1], some[:, 6]).max()), resolution)
-        asked_of = (some, np.vstack([limits, limits.max(axis=0)]), shape, relief)
-        values, tags = _descend_cells(cells, asked_of, moves, cutoff)
-        total = _merge_bounds(total, DistanceBounds(values[:, 0], tags[:, :3], values[:, 1:].transpose(0, 2, 1),
-                                                    *tags[:, 3:].T))
+        lowest = float(some[:, 4].min())
+        widest = np.maximum(some[:, 0] + some[:, 1], some[:, 6])
+        shape = (lowest, float(widest.max()), resolution)
+        with_highest = np.vstack([limits, limits.max(axis=0)])
+        values, tags = _descend_cells(cells, (some, with_highest, shape, relief), moves, cutoff)
+        points = values[:, 1:].transpose(0, 2, 1)
+        blocked, looked = tags[:, 3:].T
+        found = DistanceBounds(values[:, 0], tags[:, :3], points, blocked, looked)
+        total = _merge_bounds(total, found)
     return total
 
 
+def _nothing_near(n: int, cutoff: Array) -> DistanceBounds:
+    """Answers for n motions that nothing comes near to."""
+    lower = np.tile(cutoff, (n, 1))
+    face = np.full((n, 3), -1)
+    blocked = np.full(n, -1)
+    looked = np.zeros(n, int)
+    return DistanceBounds(lower, face, np.zeros((n, 3, 3)), blocked, looked)
+
+
 def _descend_cells(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Array) -> tuple[Array, Indices]:
-    moves, cutoff = np.ascontiguousarray(moves), np.ascontiguousarray(cutoff)
-    values, tags = np.empty((len(moves), 4, 3)), np.empty((len(moves), 5), dtype=np.int64)
+    moves = np.ascontiguousarray(moves)
+    cutoff = np.ascontiguousarray(cutoff)
+    values = np.empty((len(moves), 4, 3))
+    tags = np.empty((len(moves), 5), dtype=np.int64)
     spend(_QUESTION)
 
     def _descend(some: slice) -> None:
@@ -164,12 +186,15 @@ def _descend_cells(cells: BoundingTree, tool: ToolData, moves: Array, cutoff: Ar
 
     for some in share_out(_descend, len(moves), _MOTIONS_AT_ONCE):
         breathe()
-        spend(_MOTION * len(moves[some]) + float(tags[some, 4].sum()))
+        looked = float(tags[some, 4].sum())
+        spend(_MOTION * len(moves[some]) + looked)
     return values, tags
 
 
 def _merge_bounds(one: DistanceBounds, other: DistanceBounds) -> DistanceBounds:
     nearer = (other.lower < one.lower) | (one.face < 0)
-    return DistanceBounds(np.minimum(one.lower, other.lower), np.where(nearer, other.face, one.face),
-                          np.where(nearer[..., None], other.point, one.point),
-                          np.where(one.blocked < 0, other.blocked, one.blocked), one.looked + other.looked)
+    lower = np.minimum(one.lower, other.lower)
+    face = np.where(nearer, other.face, one.face)
+    point = np.where(nearer[..., None], other.point, one.point)
+    blocked = np.where(one.blocked < 0, other.blocked, one.blocked)
+    return DistanceBounds(lower, face, point, blocked, one.looked + other.looked)

@@ -31,38 +31,45 @@ _AT_ONCE = 64
 
 def kernel_inputs(face: Face, tool: Tool, scallop: float, allowance: float) -> tuple[OrientedSurface, CutterParameters]:
     """What kernels take of a face and a tool, checked."""
-    return (OrientedSurface(face.surface.data, -1.0 if face.flip else 1.0),
-            cutter_parameters(tool, scallop, allowance))
+    sign = -1.0 if face.flip else 1.0
+    surface = OrientedSurface(face.surface.data, sign)
+    return surface, cutter_parameters(tool, scallop, allowance)
 
 
 def kernel_contacts(uv: ArrayLike, feed: Feed, scallop: ArrayLike) -> tuple[StripContacts, int]:
     """What kernels take of contacts, with one scallop height or one each; and what the pass runs along."""
     rows = np.array(as_rows(uv, 2, "uv"), dtype=float, order="C")
-    heights = np.array(np.broadcast_to(scallop, len(rows)), dtype=float)
+    number = len(rows)
+    heights = np.array(np.broadcast_to(scallop, number), dtype=float)
     if not isinstance(feed, str):
-        direction = np.broadcast_to(unit(as_rows(feed, 3, "feed")), (len(rows), 3))
-        return StripContacts(rows, np.array(direction, order="C"), heights), SECTION
+        direction = np.broadcast_to(unit(as_rows(feed, 3, "feed")), (number, 3))
+        feeds = np.array(direction, order="C")
+        return StripContacts(rows, feeds, heights), SECTION
     if feed not in ("u", "v"):
         raise InvalidInput(f"feed is {feed!r}: it must be 'u', 'v' or a vector")
-    return StripContacts(rows, np.zeros((len(rows), 3)), heights), ALONG_U if feed == "u" else ALONG_V
+    along = ALONG_U if feed == "u" else ALONG_V
+    return StripContacts(rows, np.zeros((number, 3)), heights), along
 
 
 def take_half_widths(surface: OrientedSurface, cutter: CutterParameters, contacts: StripContacts, axes: Array,
                      options: StripOptions) -> Array:
     """Half widths (k, n, 2) of n contacts with k axes, (k, n, 3) or (k, 1, 3)."""
-    out = np.empty((len(axes), len(contacts.uv), 2))
+    number = len(axes)
+    out = np.empty((number, len(contacts.uv), 2))
     each = _SECTION if options.normal_section else _CONTACT
     spend(_QUESTION + each * out.shape[0] * out.shape[1])
 
     def _take(some: slice) -> None:
         rows = axes[:, some] if axes.shape[1] > 1 else axes
-        widths, work = np.empty((len(axes), some.stop - some.start, 2)), new_workspace(len(axes))
+        rows = np.array(rows, order="C")
+        widths = np.empty((number, some.stop - some.start, 2))
         part = StripContacts(*(each[some] for each in contacts))
-        steps[some.start] = half_widths(surface, cutter, part, np.array(rows, order="C"), options, work, widths)
+        work = new_workspace(number)
+        steps[some.start] = half_widths(surface, cutter, part, rows, options, work, widths)
         out[:, some] = widths
 
     steps: dict[int, float] = {}
-    size = max(1, _AT_ONCE // len(axes))
+    size = max(1, _AT_ONCE // number)
     for some in share_out(_take, len(contacts.uv), size):
         breathe()
         spend(_STEP * steps[some.start])
@@ -113,10 +120,12 @@ def strip_width(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     **Properties**: 1. a rigid motion changes nothing, a mirror exchanges left and right; 2. lengths scale; 3. for
     h -> 0 the sum tends to `second_order_width`.
     """
-    inputs = kernel_inputs(face, tool, scallop, allowance)
-    contacts, along = kernel_contacts(face.outside_folds(as_rows(uv, 2, "uv")), feed, scallop)
+    surface, cutter = kernel_inputs(face, tool, scallop, allowance)
+    on_sound_places = face.outside_folds(as_rows(uv, 2, "uv"))
+    contacts, along = kernel_contacts(on_sound_places, feed, scallop)
     axes = axis_rows(axis, len(contacts.uv))[None]
-    return take_half_widths(*inputs, contacts, axes, StripOptions(along, True))[0, :, ::-1].copy()
+    halves = take_half_widths(surface, cutter, contacts, axes, StripOptions(along, True))[0]
+    return np.asarray(halves[:, ::-1].copy())
 
 
 def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop: float, feed: str = "u",
@@ -143,10 +152,12 @@ def step_widths(face: Face, tool: Tool, uv: ArrayLike, axis: ArrayLike, scallop:
     InvalidInput
         As in `strip_width`.
     """
-    count, axes = len(as_rows(uv, 2, "uv")), unit(as_rows(axis, 3, "axis"))
-    if len(axes) not in (1, count):
-        raise InvalidInput(f"{len(axes)} axes for {count} contacts: give one axis, or one for each contact")
-    return np.asarray(_take_step_widths(face, tool, uv, axes[None], feed, (scallop, allowance), march)[0])
+    number = len(as_rows(uv, 2, "uv"))
+    axes = unit(as_rows(axis, 3, "axis"))
+    if len(axes) not in (1, number):
+        raise InvalidInput(f"{len(axes)} axes for {number} contacts: give one axis, or one for each contact")
+    widths = _take_step_widths(face, tool, uv, axes[None], feed, scallop, allowance, march)
+    return np.asarray(widths[0])
 
 
 def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike, scallop: float, feed: str = "u",
@@ -171,16 +182,19 @@ def step_widths_many_axes(face: Face, tool: Tool, uv: ArrayLike, axes: ArrayLike
         As in `strip_width`.
     """
     rows = unit(as_rows(axes, 3, "axes"))[:, None]
-    return _take_step_widths(face, tool, uv, rows, feed, (scallop, allowance))
+    return _take_step_widths(face, tool, uv, rows, feed, scallop, allowance)
 
 
-def _take_step_widths(face: Face, tool: Tool, uv: ArrayLike, axes: Array, feed: str,
-                      heights: tuple[float, float], march: bool = True) -> Array:
+def _take_step_widths(face: Face, tool: Tool, uv: ArrayLike, axes: Array, feed: str, scallop: float,
+                      allowance: float, march: bool = True) -> Array:
     if not isinstance(feed, str):
         raise InvalidInput("step widths need feed 'u' or 'v': a vector has no step parameter")
-    inputs = kernel_inputs(face, tool, *heights)
+    surface, cutter = kernel_inputs(face, tool, scallop, allowance)
     asked = as_rows(uv, 2, "uv")
-    contacts, along = kernel_contacts(face.outside_folds(asked), feed, heights[0])
-    widths = take_half_widths(*inputs, contacts, axes, StripOptions(along, False, march=march))
-    aside = (asked - contacts.uv)[:, 1 - along, None] * np.array([1.0, -1.0])
-    return np.where(widths > 0.0, np.maximum(widths + aside, 0.0), 0.0)
+    contacts, along = kernel_contacts(face.outside_folds(asked), feed, scallop)
+    options = StripOptions(along, False, march=march)
+    widths = take_half_widths(surface, cutter, contacts, axes, options)
+    # Contacts in folds stand for the places beside them: by so much their half widths end elsewhere.
+    moved = (asked - contacts.uv)[:, 1 - along, None]
+    from_asked = widths + moved * np.array([1.0, -1.0])
+    return np.where(widths > 0.0, np.maximum(from_asked, 0.0), 0.0)

@@ -179,10 +179,10 @@ def _width(work: TwoPointInputs, setting: ContactSet, ring: CornerCircles) -> Ar
     pace = np.linalg.norm(across, axis=1)
     step = ring.uv[:, FRONT, 1 - work.column]
     lines = (step, ring.height[:, FRONT])
-    left_side, right_side = SIDES
-    left, _ = strip_end(work.scallop, lines, left_side)
+    right_side, left_side = SIDES
     right, _ = strip_end(work.scallop, lines, right_side)
-    return np.asarray(np.abs(left - right) * pace)
+    left, _ = strip_end(work.scallop, lines, left_side)
+    return np.asarray(np.abs(right - left) * pace)
 
 
 def strip_end(limit: float, lines: tuple[Array, Array], columns: range) -> tuple[Array, NDArray[np.int64]]:

@@ -104,8 +104,10 @@ class ContactSet:
     def __post_init__(self) -> None:
         check_bottom(self.tool)
         check_tolerance(self.tool.radius, self.tolerance)
-        object.__setattr__(self, "uv", as_rows(self.uv, 2, "uv"))
-        object.__setattr__(self, "feed", np.broadcast_to(as_rows(self.feed, 3, "feed"), (len(self.uv), 3)))
+        uv = as_rows(self.uv, 2, "uv")
+        feed = as_rows(self.feed, 3, "feed")
+        object.__setattr__(self, "uv", uv)
+        object.__setattr__(self, "feed", np.broadcast_to(feed, (len(uv), 3)))
 
     @property
     def offset(self) -> float:
@@ -136,8 +138,13 @@ class ContactSet:
         d = self.face.evaluate(self.uv)
         frame = self.frame
         form = curvature_form(d, frame.normal, frame.feed)
-        along, across = form[:, 0, 0], form[:, 1, 1]
-        return tuple(k / np.maximum(1 - self.offset * k, 1e-9) for k in (along, across))  # type: ignore[return-value]
+        along = form[:, 0, 0]
+        across = form[:, 1, 1]
+        return self._at_ring(along), self._at_ring(across)
+
+    def _at_ring(self, curvature: Array) -> Array:
+        """Curvature of the surface in which the ring moves, from that of the face."""
+        return np.asarray(curvature / np.maximum(1 - self.offset * curvature, 1e-9))
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +208,8 @@ class CornerCircles:
         which : (n,) array of bool or int
         new : CornerCircles
         """
-        whole = tuple(rows.copy() for rows in (self.axis, self.tip, self.uv, self.height))
+        old = (self.axis, self.tip, self.uv, self.height)
+        whole = tuple(rows.copy() for rows in old)
         for rows, some in zip(whole, (new.axis, new.tip, new.uv, new.height), strict=True):
             rows[which] = some
         return CornerCircles(*whole)
@@ -210,12 +218,15 @@ class CornerCircles:
     def sides(self) -> Array:
         """Least height of the front half, right and left of the contact, (n, 2) mm."""
         front = self.height[:, FRONT]
-        return np.stack([_least(front[:, :MIDDLE + 1], MIDDLE), _least(front[:, MIDDLE:], 0)], axis=1)
+        right = _least(front[:, :MIDDLE + 1], MIDDLE)
+        left = _least(front[:, MIDDLE:], 0)
+        return np.stack([right, left], axis=1)
 
     @property
     def least(self) -> Array:
         """Least height of the whole ring, (n,) mm."""
-        return _least(np.concatenate([self.height, self.height[:, :1]], axis=1), CONTACT)
+        closed = np.concatenate([self.height, self.height[:, :1]], axis=1)
+        return _least(closed, CONTACT)
 
 
 def _least(rows: Array, contact: int) -> Array:
@@ -225,15 +236,20 @@ def _least(rows: Array, contact: int) -> Array:
     """
     k = np.clip(np.argmin(rows, axis=1), 1, rows.shape[1] - 2)
     i = np.arange(len(rows))
-    low, middle, high = rows[i, k - 1], rows[i, k], rows[i, k + 1]
-    slope, bend = (high - low) / 2, high - 2 * middle + low
+    low = rows[i, k - 1]
+    middle = rows[i, k]
+    high = rows[i, k + 1]
+    slope = (high - low) / 2
+    bend = high - 2 * middle + low
     inside = (bend > 0) & (np.abs(slope) < bend) & (k != contact)
     first = np.clip(k - 2, 0, rows.shape[1] - 5)
-    place = k - first - np.where(inside, slope / np.where(inside, bend, 1.0), 0.0)
+    vertex = np.where(inside, slope / np.where(inside, bend, 1.0), 0.0)
+    place = k - first - vertex
     value = np.zeros(len(rows))
     for j in range(5):
         others = [m for m in range(5) if m != j]
-        value += rows[i, first + j] * np.prod([(place - m) / (j - m) for m in others], axis=0)
+        weight = np.prod([(place - m) / (j - m) for m in others], axis=0)
+        value += rows[i, first + j] * weight
     return np.asarray(np.minimum(value, rows.min(axis=1)))
 
 
@@ -247,9 +263,14 @@ def stand_of(setting: ContactSet, tip: Array, axis: Array) -> Posture:
         mm, unit vectors.
     """
     frame = setting.frame
-    along, beside, up = (dot(axis, side) for side in (frame.feed, frame.left, frame.normal))
-    low = tips(setting.face.evaluate(setting.uv).point, frame.normal, axis, setting.tool, setting.allowance)
-    return Posture(np.arccos(np.clip(up, -1.0, 1.0)), np.arctan2(beside, along), dot(tip - low, frame.normal))
+    along = dot(axis, frame.feed)
+    beside = dot(axis, frame.left)
+    up = dot(axis, frame.normal)
+    point = setting.face.evaluate(setting.uv).point
+    low = tips(point, frame.normal, axis, setting.tool, setting.allowance)
+    lean = np.arccos(np.clip(up, -1.0, 1.0))
+    direction = np.arctan2(beside, along)
+    return Posture(lean, direction, dot(tip - low, frame.normal))
 
 
 def rings(setting: ContactSet, stand: Posture, start: Array | None = None) -> CornerCircles:
@@ -262,23 +283,30 @@ def rings(setting: ContactSet, stand: Posture, start: Array | None = None) -> Co
     start : (n, 120, 2) array, optional
         Feet of rings that stand nearly so.
     """
-    face, tool, frame = setting.face, setting.tool, setting.frame
+    face = setting.face
+    tool = setting.tool
+    frame = setting.frame
     d = face.evaluate(setting.uv)
     axis = axis_from_lean(frame, stand.lean, stand.direction)
-    tip = tips(d.point + stand.lift[:, None] * frame.normal, frame.normal, axis, tool, setting.allowance)
-    ahead = np.cos(stand.direction)[:, None] * frame.feed + np.sin(stand.direction)[:, None] * frame.left
-    ahead = np.cos(stand.lean)[:, None] * ahead - np.sin(stand.lean)[:, None] * frame.normal
+    lifted = d.point + stand.lift[:, None] * frame.normal
+    tip = tips(lifted, frame.normal, axis, tool, setting.allowance)
+    # The way in which the axis leans, at right angles to it: there the ring is lowest.
+    level = np.cos(stand.direction)[:, None] * frame.feed + np.sin(stand.direction)[:, None] * frame.left
+    ahead = np.cos(stand.lean)[:, None] * level - np.sin(stand.lean)[:, None] * frame.normal
     left = np.cross(axis, ahead)
     centre = tip + tool.corner_radius * axis
-    points = (centre[:, None] + tool.flat_radius * (np.cos(ANGLES)[:, None] * ahead[:, None]
-                                                    + np.sin(ANGLES)[:, None] * left[:, None]))
+    along = np.cos(ANGLES)[:, None] * ahead[:, None]
+    beside = np.sin(ANGLES)[:, None] * left[:, None]
+    points = centre[:, None] + tool.flat_radius * (along + beside)
     rounds = 1
     if start is None:
         rounds = 6
         metric = np.linalg.pinv(np.stack([d.su, d.sv], axis=-1))
-        start = setting.uv[:, None] + np.einsum("nij,nkj->nki", metric, points - d.point[:, None])
+        from_contact = points - d.point[:, None]
+        start = setting.uv[:, None] + np.einsum("nij,nkj->nki", metric, from_contact)
     uv, height = _feet(face, points.reshape(-1, 3), start.reshape(-1, 2), rounds)
-    return CornerCircles(axis, tip, uv.reshape(*points.shape[:2], 2), height.reshape(points.shape[:2]) - setting.offset)
+    shape = points.shape[:2]
+    return CornerCircles(axis, tip, uv.reshape(*shape, 2), height.reshape(shape) - setting.offset)
 
 
 def _feet(face: Face, points: Array, uv: Array, rounds: int) -> tuple[Array, Array]:
@@ -289,11 +317,19 @@ def _feet(face: Face, points: Array, uv: Array, rounds: int) -> tuple[Array, Arr
     for _ in range(rounds):
         d = face.evaluate(uv)
         gap = d.point - points
-        fu, fv = dot(gap, d.su), dot(gap, d.sv)
-        e, f, g = dot(d.su, d.su), dot(d.su, d.sv), dot(d.sv, d.sv)
-        a, b, c = e + dot(gap, d.suu), f + dot(gap, d.suv), g + dot(gap, d.svv)
+        fu = dot(gap, d.su)
+        fv = dot(gap, d.sv)
+        e = dot(d.su, d.su)
+        f = dot(d.su, d.sv)
+        g = dot(d.sv, d.sv)
+        a = e + dot(gap, d.suu)
+        b = f + dot(gap, d.suv)
+        c = g + dot(gap, d.svv)
+        # Where the second derivatives do not make a valley, the first ones alone do.
         full = (a > 0.1 * e) & (a * c - b * b > 0.01 * (e * g - f * f))
-        a, b, c = np.where(full, a, e), np.where(full, b, f), np.where(full, c, g)
+        a = np.where(full, a, e)
+        b = np.where(full, b, f)
+        c = np.where(full, c, g)
         turn = np.maximum(a * c - b * b, 1e-300)
         step = np.stack([b * fv - c * fu, b * fu - a * fv], axis=1) / turn[:, None]
         uv = uv + np.clip(step, -most, most)

@@ -1,6 +1,7 @@
 """Strips that a flat end leaves along iso-parametric passes, and the adjacent pass by [jang2021]'s iteration."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,9 +71,11 @@ class Strip:
     @property
     def shares(self) -> tuple[tuple[PassPostures, slice], ...]:
         """Each lane with the places on which it works."""
+        number = len(self.halves)
         if len(self.lanes) == 1:
-            return ((self.lanes[0], slice(0, len(self.halves))),)
-        return ((self.lanes[0], slice(0, self.turn)), (self.lanes[1], slice(self.turn, len(self.halves))))
+            return ((self.lanes[0], slice(0, number)),)
+        first, second = self.lanes
+        return ((first, slice(0, self.turn)), (second, slice(self.turn, number)))
 
 
 def places(work: TwoPointInputs) -> Array:
@@ -95,12 +98,15 @@ def nodes(work: TwoPointInputs, step: float) -> Array:
     step : float
     """
     a0, a1, _, _ = work.span
+    whole = a1 - a0
     d = work.face.evaluate(work.uv(np.array([a0, a1]), step))
-    speed = np.linalg.norm(d.su if work.feed == "u" else d.sv, axis=1)
-    beyond = 0.45 * work.tool.flat_radius / np.maximum(speed, 1e-9 / (a1 - a0))
-    gap = (a1 - a0) / (PLACES - 1)
-    before, after = (int(np.ceil(b / gap)) for b in np.minimum(beyond, a1 - a0))
-    return np.asarray(a0 + gap * np.arange(-before, PLACES + after), dtype=float)
+    along = d.su if work.feed == "u" else d.sv
+    speed = np.linalg.norm(along, axis=1)
+    beyond = 0.45 * work.tool.flat_radius / np.maximum(speed, 1e-9 / whole)
+    gap = whole / (PLACES - 1)
+    before, after = (int(np.ceil(b / gap)) for b in np.minimum(beyond, whole))
+    number = np.arange(-before, PLACES + after)
+    return np.asarray(a0 + gap * number, dtype=float)
 
 
 def lane(work: TwoPointInputs, step: float, sense: int, along: Array | None = None) -> PassPostures:
@@ -121,27 +127,51 @@ def lane(work: TwoPointInputs, step: float, sense: int, along: Array | None = No
     """
     along = nodes(work, step) if along is None else along
     found = postures(work, along, step, sense)
-    uv = found.ring.uv[:, FRONT]
-    ahead, beside = uv[..., work.column], uv[..., 1 - work.column]
-    lines, targets = found.ring.height[:, FRONT], places(work)
-    across, height, came = (np.full((len(targets), len(FRONT)), np.nan) for _ in range(3))
-    for j in range(len(FRONT)):
-        # A line that turns back is followed as long as it goes on.
-        on = np.concatenate([[True], ahead[1:, j] > np.maximum.accumulate(ahead[:-1, j])])
-        x = ahead[on, j]
-        inside = (targets >= x[0]) & (targets <= x[-1])
-        for rows, out in ((beside, across), (lines, height), (np.broadcast_to(along[:, None], lines.shape), came)):
-            out[inside, j] = np.interp(targets[inside], x, rows[on, j])
-    ends = [strip_end(work.scallop, (across, height), columns) for columns in SIDES]
-    halves = np.abs(np.stack([end[0] for end in ends], axis=1) - step)
-    if np.nanmean(ends[0][0] - ends[1][0]) > 0:
+    lines = _lines_of_ring(work, along, found)
+    right_side, left_side = SIDES
+    one_end, one_number = strip_end(work.scallop, (lines.across, lines.height), right_side)
+    other_end, other_number = strip_end(work.scallop, (lines.across, lines.height), left_side)
+    halves = np.abs(np.stack([one_end, other_end], axis=1) - step)
+    if np.nanmean(one_end - other_end) > 0:
         halves = halves[:, ::-1]
-    first, last = MIDDLE - ends[0][1], MIDDLE + ends[1][1]
+    first = MIDDLE - one_number
+    last = MIDDLE + other_number
     number = np.arange(len(FRONT))
     worked = (number >= first[:, None]) & (number <= last[:, None])
-    reach = np.stack([np.nanmin(np.where(worked, came, np.inf), axis=1), np.nanmax(np.where(worked, came, -np.inf),
-                                                                                   axis=1)], axis=1)
+    earliest = np.nanmin(np.where(worked, lines.came, np.inf), axis=1)
+    latest = np.nanmax(np.where(worked, lines.came, -np.inf), axis=1)
+    reach = np.stack([earliest, latest], axis=1)
     return PassPostures(sense, along, found, np.nan_to_num(halves), reach)
+
+
+class _RingLines(NamedTuple):
+    """Lines that the points of the ring's front half draw, at the places of the face, (t, k) each: step parameter,
+    height, and where along the pass the cutter draws them; nan where a line does not come."""
+
+    across: Array
+    height: Array
+    came: Array
+
+
+def _lines_of_ring(work: TwoPointInputs, along: Array, found: Postures) -> _RingLines:
+    """The lines of a pass."""
+    uv = found.ring.uv[:, FRONT]
+    ahead = uv[..., work.column]
+    beside = uv[..., 1 - work.column]
+    height = found.ring.height[:, FRONT]
+    everywhere = np.broadcast_to(along[:, None], height.shape)
+    targets = places(work)
+    shape = (len(targets), len(FRONT))
+    lines = _RingLines(np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan))
+    for j in range(len(FRONT)):
+        # A line that turns back is followed as long as it goes on.
+        farthest = np.maximum.accumulate(ahead[:-1, j])
+        on = np.concatenate([[True], ahead[1:, j] > farthest])
+        x = ahead[on, j]
+        inside = (targets >= x[0]) & (targets <= x[-1])
+        for rows, out in zip((beside, height, everywhere), lines, strict=True):
+            out[inside, j] = np.interp(targets[inside], x, rows[on, j])
+    return lines
 
 
 def strip(work: TwoPointInputs, step: float, leaning: str = "ahead") -> Strip:
@@ -160,13 +190,15 @@ def strip(work: TwoPointInputs, step: float, leaning: str = "ahead") -> Strip:
     if leaning in ("ahead", "back"):
         one = lane(work, step, 1 if leaning == "ahead" else -1)
         return Strip(step, (one,), len(one.halves), one.halves)
-    first, second = (lane(work, step, sense) for sense in ((1, -1) if leaning == "inward" else (-1, 1)))
-    wide = [one.halves.sum(axis=1) for one in (first, second)]
-    low = np.minimum.accumulate(np.concatenate([[np.inf], wide[0]]))
-    high = np.minimum.accumulate(np.concatenate([[np.inf], wide[1][::-1]]))[::-1]
-    least = np.minimum(low, high)
-    turn = int(np.argmax(least))
-    if turn in (0, len(wide[0])):
+    begin = 1 if leaning == "inward" else -1
+    first = lane(work, step, begin)
+    second = lane(work, step, -begin)
+    wide_first = first.halves.sum(axis=1)
+    wide_second = second.halves.sum(axis=1)
+    low = np.minimum.accumulate(np.concatenate([[np.inf], wide_first]))
+    high = np.minimum.accumulate(np.concatenate([[np.inf], wide_second[::-1]]))[::-1]
+    turn = int(np.argmax(np.minimum(low, high)))
+    if turn in (0, len(wide_first)):
         one = second if turn == 0 else first
         return Strip(step, (one,), len(one.halves), one.halves)
     halves = np.concatenate([first.halves[:turn], second.halves[turn:]])
@@ -203,21 +235,25 @@ def next_strip(work: TwoPointInputs, covered: Array, guess: float, leaning: str)
     **Source**: [jang2021] Eq. (11), then Eq. (12), iterated.
     """
     *_, s0, s1 = work.span
+    close = CLOSE * (s1 - s0)
     step = float(covered.min()) + guess
-    low, best = None, None
+    best: Strip | None = None
     for _ in range(12):
         found = strip(work, min(step, s1), leaning)
         ok = ~left_out(found)
         if not ok.any():
             raise InvalidInput(f"the cutter comes within the tolerance nowhere along a pass: {SMALLER_ONE}, or "
                                "another feed")
-        ahead = float((covered + found.halves[:, 0])[ok].min())
+        lower_ends = covered + found.halves[:, 0]
+        ahead = float(lower_ends[ok].min())
         spare = ahead - found.step
-        if spare >= 0 and (low is None or found.step > low):
-            low, best = found.step, found
-        if 0 <= spare <= CLOSE * (s1 - s0) or (spare > 0 and found.step >= s1):
+        if spare >= 0 and (best is None or found.step > best.step):
+            best = found
+        if 0 <= spare <= close or (spare > 0 and found.step >= s1):
             return found
-        step = ahead - (0.0 if spare > 0 else 0.25 * CLOSE * (s1 - s0))
+        step = ahead
+        if spare <= 0:
+            step = ahead - 0.25 * CLOSE * (s1 - s0)
     if best is None:
         raise InvalidInput("passes cannot be placed: no strip meets what is covered; take a smaller step of the "
                            "surface, or another feed")
@@ -240,17 +276,22 @@ def lay_strips(work: TwoPointInputs, leaning: str = "ahead", progress: Progress 
         When the cutter comes within the tolerance nowhere along a pass, or passes are far too many.
     """
     *_, s0, s1 = work.span
-    covered, found = np.full(PLACES, s0), list[Strip]()
+    width = s1 - s0
+    covered = np.full(PLACES, s0)
+    found: list[Strip] = []
     guess = 0.0
     while True:
-        progress.report("passes", int(1000 * (min(covered.min(), s1) - s0) / (s1 - s0)), 1000)
+        done = min(covered.min(), s1) - s0
+        progress.report("passes", int(1000 * done / width), 1000)
         one = next_strip(work, covered, guess, leaning)
-        if (found and one.step <= found[-1].step + 1e-6 * (s1 - s0)) or len(found) >= MOST:
+        stands = bool(found) and one.step <= found[-1].step + 1e-6 * width
+        if stands or len(found) >= MOST:
             raise InvalidInput("strips are too narrow to place passes: the cutter does not fit the surface; "
                                f"{SMALLER_ONE}, or another feed")
         found.append(one)
         ok = ~left_out(one)
-        covered = np.maximum(covered, np.where(ok, one.step + one.halves[:, 1], one.step))
+        upper_ends = one.step + one.halves[:, 1]
+        covered = np.maximum(covered, np.where(ok, upper_ends, one.step))
         guess = float(one.halves[ok].sum(axis=1).min()) / 2
-        if (covered[ok] >= s1 - 1e-9 * (s1 - s0)).all():
+        if (covered[ok] >= s1 - 1e-9 * width).all():
             return tuple(found)
