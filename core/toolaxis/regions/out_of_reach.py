@@ -85,16 +85,20 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     of `toolaxis.feasibility.feasibility.Feasibility.reach`; 2. areas add up to no more than that of the face.
     """
     required = scene.required(face, steps_count=False)  # the exact check does not charge steps to the cutter
-    lines = AxisLines.look(face, tools, required, scene, max(_FEWEST_CONES, most_pairs // _PAIRS_FOR_CONE))
+    most_cones = max(_FEWEST_CONES, most_pairs // _PAIRS_FOR_CONE)
+    lines = AxisLines.look(face, tools, required, scene, most_cones)
     proofs = _proofs(tools, scene, required)
-    corners = CornerGouges.look(face, [proof.ball for proof in proofs], lines.left,
-                                max(_FEWEST_CELLS, most_pairs // _PAIRS_FOR_CELL))
-    cells = corners.left.pick(np.sort(np.argsort(-corners.left.area, kind="stable")[:_MOST_FIRST]))
+    balls = [proof.ball for proof in proofs]
+    most_cells = max(_FEWEST_CELLS, most_pairs // _PAIRS_FOR_CELL)
+    corners = CornerGouges.look(face, balls, lines.left, most_cells)
+    cells = _largest(corners.left, _MOST_FIRST)
     for proof in proofs:
         proof.begin(len(cells))
-    proven = float(sum(some.area.sum() for some in (*lines.proven, *corners.proven)))
-    by_corner, reached = float(sum(some.area.sum() for some in corners.proven)), 0.0
-    found = [some.rectangles for some in (*lines.proven, *corners.proven)]
+    before = (*lines.proven, *corners.proven)
+    proven = float(sum(some.area.sum() for some in before))
+    by_corner = float(sum(some.area.sum() for some in corners.proven))
+    reached = 0.0
+    found = [some.rectangles for some in before]
     tried = 0
     for halving in range(_HALVINGS + 1):
         surely, narrow = _smallest_gouges(proofs, cells)
@@ -102,20 +106,25 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
         open_ = narrow & ~surely
         for proof in proofs:
             tried += proof.close(cells, ~narrow & ~met, met, most_pairs - tried)
-            open_[proof.pairs.cell] |= ~narrow[proof.pairs.cell]
+            waits = proof.pairs.cell
+            open_[waits] |= ~narrow[waits]
         closed = ~surely & ~met & ~open_
         claimed = np.flatnonzero(surely | closed)
         unlike = claimed[~is_as_measured(face, cells.pick(claimed))]
-        surely[unlike], closed[unlike] = False, False  # it stays undecided
+        surely[unlike] = False  # it stays undecided
+        closed[unlike] = False
+        is_proven = surely | closed
         by_corner += float(cells.area[surely].sum())
-        proven += float(cells.area[surely | closed].sum())
+        proven += float(cells.area[is_proven].sum())
         reached += float(cells.area[met].sum())
-        found.append(cells.rectangles[surely | closed])
+        found.append(cells.rectangles[is_proven])
         is_left = open_ & ~met
         left = np.flatnonzero(is_left)
+        if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS:
+            break
         # A cell is halved only where each of its pairs may be looked at once more at least.
         waiting = sum(int(is_left[proof.pairs.cell].sum()) for proof in proofs)
-        if not len(left) or halving == _HALVINGS or 4 * len(left) > _MOST_CELLS or tried + waiting > most_pairs:
+        if tried + waiting > most_pairs:
             break
         cells, parent = halve_rectangles(face, cells.pick(left))
         for proof in proofs:
@@ -125,12 +134,19 @@ def prove_out_of_reach(face: Face, tools: Sequence[Tool], scene: ReachScene,
     return OutOfReach(proven, min(by_corner, proven), min(reached, whole - proven), np.concatenate(found))
 
 
+def _largest(cells: FaceRectangles, most: int) -> FaceRectangles:
+    """The largest of some cells, in their order."""
+    largest_first = np.argsort(-cells.area, kind="stable")
+    return cells.pick(np.sort(largest_first[:most]))
+
+
 def _smallest_gouges(proofs: Sequence["_Proof"], cells: FaceRectangles) -> tuple[Bools, Bools]:
     """Where the smallest ball of all tools gouges, as `CornerBall.gouges`."""
     ball = smallest_ball([proof.ball for proof in proofs])
-    if ball is None:
-        return np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
-    return ball.gouges(cells)
+    if ball is not None:
+        return ball.gouges(cells)
+    number = len(cells)
+    return np.zeros(number, dtype=bool), np.zeros(number, dtype=bool)
 
 
 def _proofs(tools: Sequence[Tool], scene: ReachScene, required: Array) -> list["_Proof"]:
@@ -152,19 +168,22 @@ class _Proof:
     """
 
     def __init__(self, scene: ReachScene, tool: Tool, required: Array, search: ToolSearch) -> None:
-        self._scene, self._tool, self._search = scene, tool, search
+        self._scene = scene
+        self._tool = tool
+        self._search = search
         self.ball = CornerBall(tool, search, required, scene.allowance)
         whole = scene.tool(tool, required)
-        self._plain = ToolSlices(whole.pieces, whole.limits[:, whole.pieces[:, 7].astype(int)],
-                                 np.zeros(len(whole.pieces)))
+        component = whole.pieces[:, 7].astype(int)
+        nothing = np.zeros(len(whole.pieces))
+        self._plain = ToolSlices(whole.pieces, whole.limits[:, component], nothing)
         self._slices = cut_into_slices(whole, tool.corner_radius)
         self._core = cut_into_slices(take_off(whole, tool.flat_radius), tool.corner_radius)
 
     def begin(self, cells: int) -> None:
         """Pair so many cells with cones over the whole sphere."""
         cones = first_cones()
-        cell, cone = (side.ravel() for side in np.indices((cells, len(cones))))
-        self.pairs = CellCones(cell, cones.pick(cone))
+        cell, cone = np.indices((cells, len(cones)))
+        self.pairs = CellCones(cell.ravel(), cones.pick(cone.ravel()))
 
     def close(self, cells: FaceRectangles, asked: Bools, met: Bools, most: int) -> int:
         """Leave those pairs of which nothing is known; note in met (n,) the cells that the tool reaches in the middle.
@@ -184,11 +203,14 @@ class _Proof:
             How many pairs were looked at.
         """
         surely, narrow = self.ball.gouges(cells)
-        waiting = self.pairs.pick(~surely[self.pairs.cell])
-        now = asked & ~narrow
-        kept, waiting = waiting.pick(~now[waiting.cell]), waiting.pick(now[waiting.cell])
+        pairs = self.pairs.pick(~surely[self.pairs.cell])
+        now = (asked & ~narrow)[pairs.cell]
+        kept = pairs.pick(~now)
+        waiting = pairs.pick(now)
         size = min(_AT_ONCE, max(most, _LEAST_BLOCK))
-        undecided, blocks, tried = [kept], deque(waiting.blocks(size)), 0
+        undecided = [kept]
+        blocks = deque(waiting.blocks(size))
+        tried = 0
         while blocks and tried <= most:
             breathe()
             block = blocks.popleft()
@@ -196,7 +218,8 @@ class _Proof:
             tried += len(block.cell)
             open_, wide = self._try(cells, block, met)
             undecided.append(open_.pick(~wide))
-            blocks.extend(open_.pick(wide).halve().blocks(size))
+            halves = open_.pick(wide).halve()
+            blocks.extend(halves.blocks(size))
         kept = CellCones.join_all([*undecided, *blocks])
         self.pairs = kept.pick(~met[kept.cell])
         return tried
@@ -204,28 +227,37 @@ class _Proof:
     def _try(self, cells: FaceRectangles, pairs: CellCones, met: Bools) -> tuple[CellCones, Bools]:
         """The pairs that are not decided, and which of them had better be halved in their cones than in their cells."""
         cones = pairs.cones
-        pairs = pairs.pick(np.lexsort((pairs.cell, cones.place[:, 1], cones.place[:, 0], cones.side, cones.half)))
-        axes, radius = pairs.cones.middle, pairs.cones.radius
-        places = tips(cells.point[pairs.cell], cells.normal[pairs.cell], axes, self._tool, self._scene.allowance)
+        order = np.lexsort((pairs.cell, cones.place[:, 1], cones.place[:, 0], cones.side, cones.half))
+        pairs = pairs.pick(order)
+        axes = pairs.cones.middle
+        radius = pairs.cones.radius
+        point = cells.point[pairs.cell]
+        normal = cells.normal[pairs.cell]
+        places = tips(point, normal, axes, self._tool, self._scene.allowance)
         off = self._off(cells, pairs, axes, radius)
         blocked = self._search.blocked(self._slices, radius, off, places, axes)
         if self._tool.flat_radius > 0:
             rest = np.flatnonzero(~blocked)
             blocked[rest] = self._core_blocked(cells, pairs.pick(rest), axes[rest], radius[rest])
         open_ = np.flatnonzero(~blocked)
-        pairs, places, axes, radius = pairs.pick(open_), places[open_], axes[open_], radius[open_]
+        pairs = pairs.pick(open_)
+        axes = axes[open_]
+        radius = radius[open_]
         none = np.zeros(len(axes))
-        free = ~self._search.blocked(self._plain, none, none, places, axes)
-        met[pairs.cell[free & self._is_seen(cells, pairs, axes)]] = True
-        own = self.ball.off(cells)[pairs.cell]
-        return pairs, (radius * (self._tool.stickout or self._tool.height) >= own) & (radius > _NARROW)
+        free = ~self._search.blocked(self._plain, none, none, places[open_], axes)
+        stands = free & self._is_seen(cells, pairs, axes)
+        met[pairs.cell[stands]] = True
+        of_cell = self.ball.off(cells)[pairs.cell]
+        of_cone = radius * (self._tool.stickout or self._tool.height)
+        return pairs, (of_cone >= of_cell) & (radius > _NARROW)
 
     def _core_blocked(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Bools:
         """Whether what the tool has around the ball at its contact is blocked, to whichever side its axis lies."""
         corner = self._tool.corner_radius
         normal = cells.normal[pairs.cell]
         places = cells.point[pairs.cell] + (corner + self._scene.allowance) * normal - corner * axes
-        return self._search.blocked(self._core, radius, self.ball.off(cells)[pairs.cell], places, axes)
+        off = self.ball.off(cells)[pairs.cell]
+        return self._search.blocked(self._core, radius, off, places, axes)
 
     def hand_down(self, left: Indices, parent: Indices) -> None:
         """Give the pairs of cells to their quarters.
@@ -239,26 +271,35 @@ class _Proof:
 
     def _may_touch(self, cells: FaceRectangles, pairs: CellCones) -> Bools:
         """Whether any axis of a cone may touch any place of a cell, by its angle to the normals and by the limits."""
-        axes, radius, tool = pairs.cones.middle, pairs.cones.radius, self._tool
+        axes = pairs.cones.middle
+        radius = pairs.cones.radius
+        tool = self._tool
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
         slack = cells.turn[pairs.cell] + radius
         found = angle - slack <= np.pi / 2 - tool.half_angle
         found &= angle + slack >= self._scene.tolerance.least_angle(tool.flat_radius)
         limits = self._scene.limits
-        return np.asarray(found if limits is None or not len(axes) else found & (limits.excess(axes) <= radius))
+        if limits is not None and len(axes):
+            found = found & (limits.excess(axes) <= radius)
+        return np.asarray(found)
 
     def _is_seen(self, cells: FaceRectangles, pairs: CellCones, axes: Array) -> Bools:
         """Whether the axes themselves touch the contacts."""
+        tool = self._tool
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
-        found = angle <= np.pi / 2 - self._tool.half_angle
-        found &= angle >= self._scene.tolerance.least_angle(self._tool.flat_radius)
+        found = angle <= np.pi / 2 - tool.half_angle
+        found &= angle >= self._scene.tolerance.least_angle(tool.flat_radius)
         limits = self._scene.limits
-        return np.asarray(found if limits is None or not len(axes) else found & limits.allowed(axes))
+        if limits is not None and len(axes):
+            found = found & limits.allowed(axes)
+        return np.asarray(found)
 
     def _off(self, cells: FaceRectangles, pairs: CellCones, axes: Array, radius: Array) -> Array:
         """How far the middle of the corner circle is from where it is in the middle of cell and cone, mm."""
-        off, flat = self.ball.off(cells)[pairs.cell], self._tool.flat_radius
+        off = self.ball.off(cells)[pairs.cell]
+        flat = self._tool.flat_radius
         if flat <= 0:
             return off
         angle = np.asarray(angle_between(axes, cells.normal[pairs.cell]))
-        return np.asarray(off + shift_of_axis(flat, angle, cells.turn[pairs.cell] + radius, radius))
+        turn = cells.turn[pairs.cell] + radius
+        return np.asarray(off + shift_of_axis(flat, angle, turn, radius))

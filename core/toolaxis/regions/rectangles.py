@@ -55,8 +55,10 @@ class FaceRectangles:
     @staticmethod
     def join(parts: Sequence["FaceRectangles"]) -> "FaceRectangles":
         """The cells of all of some lists, of which there is one at least."""
-        return FaceRectangles(*(np.concatenate([getattr(part, one.name) for part in parts])
-                                for one in fields(FaceRectangles)))
+        columns = []
+        for one in fields(FaceRectangles):
+            columns.append(np.concatenate([getattr(part, one.name) for part in parts]))
+        return FaceRectangles(*columns)
 
     def shrink(self) -> "FaceRectangles":
         """Their contacts alone, as cells that reach nowhere else."""
@@ -66,8 +68,9 @@ class FaceRectangles:
     @property
     def rectangles(self) -> Array:
         """Least and greatest u, least and greatest v, (n, 4)."""
-        low, high = self.middle - self.half, self.middle + self.half
-        return np.column_stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]])
+        u0, v0 = (self.middle - self.half).T
+        u1, v1 = (self.middle + self.half).T
+        return np.column_stack([u0, u1, v0, v1])
 
     def __len__(self) -> int:
         return len(self.middle)
@@ -75,9 +78,12 @@ class FaceRectangles:
 
 def first_rectangles(face: Face) -> FaceRectangles:
     u, v = Lattice(face, _shape_for(face)).lines
-    middle = grid_rows((u[1:] + u[:-1]) / 2, (v[1:] + v[:-1]) / 2)
+    middle_u = (u[1:] + u[:-1]) / 2
+    middle_v = (v[1:] + v[:-1]) / 2
+    middle = grid_rows(middle_u, middle_v)
     half = grid_rows(np.diff(u) / 2, np.diff(v) / 2)
-    return _measure(face, middle, half, face.area)[0]
+    found, _ = _measure(face, middle, half, face.area)
+    return found
 
 
 def _shape_for(face: Face) -> tuple[int, int]:
@@ -85,64 +91,79 @@ def _shape_for(face: Face) -> tuple[int, int]:
     lengths_u, lengths_v = Lattice(face, (_COARSE, _COARSE)).lengths
     along = float(np.median(lengths_u.sum(axis=0)))
     across = float(np.median(lengths_v.sum(axis=1)))
-    ratio = np.sqrt(along / across) if along > 0 and across > 0 else 1.0
+    ratio = 1.0
+    if along > 0 and across > 0:
+        ratio = np.sqrt(along / across)
     wanted = np.ceil(np.sqrt(_CELLS) * np.array([ratio, 1 / ratio]))
-    count_u, count_v = np.clip(wanted, _FEWEST, _CELLS // _FEWEST)
-    return int(count_u), int(count_v)
+    cells_u, cells_v = np.clip(wanted, _FEWEST, _CELLS // _FEWEST)
+    return int(cells_u), int(cells_v)
 
 
 def halve_rectangles(face: Face, cells: FaceRectangles) -> tuple[FaceRectangles, Indices]:
     """Four cells in place of each, those that have something of the face, and of which each is a quarter."""
     ways = np.array([[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]])
-    middle = (cells.middle[:, None] + ways * cells.half[:, None]).reshape(-1, 2)
-    found, kept = _measure(face, middle, np.repeat(cells.half / 2, 4, axis=0), float(cells.area.sum()))
-    return found, np.repeat(np.arange(len(cells)), 4)[kept]
+    middle = cells.middle[:, None] + ways * cells.half[:, None]
+    half = np.repeat(cells.half / 2, 4, axis=0)
+    found, kept = _measure(face, middle.reshape(-1, 2), half, float(cells.area.sum()))
+    quarter_of = np.repeat(np.arange(len(cells)), 4)
+    return found, quarter_of[kept]
 
 
 def _measure(face: Face, middle: Array, half: Array, area: float) -> tuple[FaceRectangles, Bools]:
     """Cells with their contacts, which share an area, and which of the rectangles have a place on the face."""
     places = grid_rows(_PLACES, _PLACES)  # nine in each, in halves of it
-    looked_at = (middle[:, None] + _WITHIN * places * half[:, None]).reshape(-1, 2)
-    is_inside = face.contains(looked_at).reshape(-1, 9)
+    looked_at = middle[:, None] + _WITHIN * places * half[:, None]
+    is_inside = face.contains(looked_at.reshape(-1, 2)).reshape(-1, 9)
     kept = np.asarray(is_inside.any(axis=1))
-    middle, half, is_inside = middle[kept], half[kept], is_inside[kept]
+    middle = middle[kept]
+    half = half[kept]
+    is_inside = is_inside[kept]
     uv = (middle[:, None] + places * half[:, None]).reshape(-1, 2)
     d = face.evaluate(uv)
     points = d.point.reshape(-1, 9, 3)
     normals = face.normal(uv).reshape(-1, 9, 3)
     has_normal = np.linalg.norm(normals, axis=2) > 0.5
     # A cell stands for the place on the face that is nearest to its middle.
-    from_middle = np.where(is_inside & has_normal, np.hypot(*places.T), np.inf)
+    away = np.hypot(*places.T)
+    from_middle = np.where(is_inside & has_normal, away, np.inf)
     chosen = np.argmin(from_middle, axis=1)
     row = np.arange(len(middle))
-    point, normal = points[row, chosen], normals[row, chosen]
+    point = points[row, chosen]
+    normal = normals[row, chosen]
     off = np.linalg.norm(points - point[:, None], axis=2).max(axis=1, initial=0.0)
-    turns = np.where(has_normal, np.asarray(angle_between(normals, normal[:, None])), np.pi)
-    turn = turns.max(axis=1, initial=0.0)
+    turns = np.asarray(angle_between(normals, normal[:, None]))
+    turn = np.where(has_normal, turns, np.pi).max(axis=1, initial=0.0)
     density = np.linalg.norm(np.cross(d.su, d.sv), axis=1).reshape(-1, 9)
-    share = np.where(is_inside, density, 0.0).mean(axis=1) * half.prod(axis=1)
+    mean_density = np.where(is_inside, density, 0.0).mean(axis=1)
+    share = mean_density * half.prod(axis=1)
     whole = float(share.sum())
     if whole > 0:  # of a sliver no cell may have a place
         share *= area / whole
-    return FaceRectangles(middle, half, point, normal, share, _BULGE * off, np.minimum(_BULGE * turn, np.pi)), kept
+    most_turn = np.minimum(_BULGE * turn, np.pi)
+    return FaceRectangles(middle, half, point, normal, share, _BULGE * off, most_turn), kept
 
 
 def is_as_measured(face: Face, cells: FaceRectangles) -> Bools:
     """Whether cells reach no farther, and their normals turn no more, at many places than was told from nine, (n,)."""
     ways = grid_rows(_CHECKED, _CHECKED)
+    every = np.arange(len(cells))
     found = np.ones(len(cells), dtype=bool)
     for first in range(0, len(cells), _AT_ONCE):
         breathe()
         some = slice(first, first + _AT_ONCE)
-        uv = (cells.middle[some, None] + ways * cells.half[some, None]).reshape(-1, 2)
-        row = np.repeat(np.arange(len(cells))[some], len(ways))
+        places = cells.middle[some, None] + ways * cells.half[some, None]
+        uv = places.reshape(-1, 2)
+        row = np.repeat(every[some], len(ways))
         inside = face.contains(uv)
-        uv, row = uv[inside], row[inside]
+        uv = uv[inside]
+        row = row[inside]
         d = face.evaluate(uv)
         normal = face.normal(uv, d)
         off = np.linalg.norm(d.point - cells.point[row], axis=1)
         known = np.linalg.norm(normal, axis=1) > 0.5
-        turn = np.where(known, np.asarray(angle_between(normal, cells.normal[row])), np.pi)
-        wrong = (off > cells.off[row] + _LEAST) | (turn > cells.turn[row] + _LEAST)
-        found[row[wrong]] = False
+        turn = np.asarray(angle_between(normal, cells.normal[row]))
+        turn = np.where(known, turn, np.pi)
+        farther = off > cells.off[row] + _LEAST
+        turned = turn > cells.turn[row] + _LEAST
+        found[row[farther | turned]] = False
     return found

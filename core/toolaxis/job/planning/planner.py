@@ -119,11 +119,17 @@ def quicker(divided: Plan, whole: Plan) -> Plan:
     divided, whole : Plan
         The first one's options are kept; that with as many axes is marked where faces stay whole.
     """
-    times = [add_times(one, reorder=True).seconds if one.outcome == "complete" else np.inf for one in (divided, whole)]
-    if whole.outcome == "cancelled" or times[0] <= times[1]:
+    if whole.outcome == "cancelled" or _seconds_of(divided) <= _seconds_of(whole):
         return divided
     marked = tuple(replace(one, chosen=one.orientations == whole.orientations) for one in divided.options)
     return replace(whole, options=marked)
+
+
+def _seconds_of(plan: Plan) -> float:
+    """Time of a plan in its quickest order, s; infinite where it is not complete."""
+    if plan.outcome != "complete":
+        return float("inf")
+    return add_times(plan, reorder=True).seconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,8 +190,8 @@ class PlanningJob:
         """
         if method == ISO:
             return replace(self, inputs=replace(self.inputs, passes=ISO))
-        return replace(self, inputs=replace(self.inputs, method=method),
-                       tool=self.tool.with_ball_end() if method == "ball" else self.tool)
+        tool = self.tool.with_ball_end() if method == "ball" else self.tool
+        return replace(self, inputs=replace(self.inputs, method=method), tool=tool)
 
     def bladed(self, pattern: Pattern, compare: bool, progress: Progress) -> Plan:
         """The plan of a part with blades: one is planned, what is done there is turned to the others.
@@ -194,20 +200,32 @@ class PlanningJob:
         """
         share = group_blade_faces(pattern, self.tool, self.inputs.tolerance.cutter_clearance)
         apart = pattern.blades.apart(self.part, pattern.first[0].number)
-        regions = "auto" if self.regions is None else None if self.regions == 1 else self.regions
+        regions = self.regions
+        if regions is None:
+            regions = "auto"
+        elif regions == 1:
+            regions = None
         one = replace(self, part=apart, regions=regions, whole=share.whole)
         first = with_refused(one.zoned_out(share.divided, progress), pattern, share)
-        found = went_on(replace(first, part=pattern.part),
-                        lambda plan: spread_out(pattern, plan, PlannerOfFaces((self,)), progress))
+        of_part = replace(first, part=pattern.part)
+        planner = PlannerOfFaces((self,))
+        found = went_on(of_part, lambda plan: spread_out(pattern, plan, planner, progress))
         if found.outcome != "cancelled" and pattern.rest:
             found = append_operations(found, self.zoned_out(pattern.rest, progress))
         if compare:
             plain = replace(one, regions=None, orientations=None, whole=(), division=())
             done = tuple(op for op in first.operations if op.done)
-            own = [face for face in (*share.divided, *share.whole) if face.number in {op.face.number for op in done}]
-            found = went_on(found, lambda plan: replace(plan, baselines=compare_methods(
-                replace(first, operations=done), own,
-                lambda name, some: plain.by(name).carried_out(some, progress.within(name))).baselines))
+            planned = {op.face.number for op in done}
+            own = [face for face in (*share.divided, *share.whole) if face.number in planned]
+
+            def by_method(name: str, some: Sequence[Face]) -> Plan:
+                return plain.by(name).carried_out(some, progress.within(name))
+
+            def with_baselines(plan: Plan) -> Plan:
+                compared = compare_methods(replace(first, operations=done), own, by_method)
+                return replace(plan, baselines=compared.baselines)
+
+            found = went_on(found, with_baselines)
         return went_on(found, lambda plan: plan if plan.blades is None else with_rooms(plan, progress))
 
     def zoned_out(self, faces: Sequence[Face], progress: Progress) -> Plan:
@@ -234,40 +252,61 @@ class PlanningJob:
     def _in_less_time(self, plan: Plan, scene: ReachScene, progress: Progress) -> Plan:
         """A plan in which operations give way to several with axes of their own, where these take less time together
         and machine as much."""
-        rows, rate = plan.operations, self.inputs.at_rates_of(self.tool).feedrate / 60
+        rows = plan.operations
+        rate = self._feedrate
 
         def _division(k: int, inner: Progress) -> Regions | None:
-            op, named = rows[k], inner.within(f"face {rows[k].face.label}")
-            if op.orientation.axis is None:
+            op = rows[k]
+            axis = op.orientation.axis
+            if axis is None:
                 return None
+            named = inner.within(f"face {op.face.label}")
             job = self.task(op.face, named)
-            seconds = self._seconds([op]) if op.done else estimate_seconds(job, op.orientation.axis, rate)
-            return divide_for_time(job, scene, WholeCut(op.orientation.axis, seconds, rate, INDEX_SECONDS), named)
+            seconds = self._seconds([op]) if op.done else estimate_seconds(job, axis, rate)
+            return divide_for_time(job, scene, WholeCut(axis, seconds, rate, INDEX_SECONDS), named)
 
         found = abreast(_division, len(rows), self.workers, progress)
-        divisions = {} if found.cancelled else {k: one for k, one in found.results.items() if one is not None}
-        targets = {k: [Target(piece, axis, however_long=True) for piece, axis in zip(one.faces, one.axes, strict=True)]
-                   for k, one in divisions.items()}
-        made, cancelled = self._operations_of([target for some in targets.values() for target in some], progress)
-        divided = {k: pieces for k, some in targets.items()
-                   if self._serves_better(pieces := self._made_of_all(some, made), rows[k])}
-        kept = [one for k, op in enumerate(rows) for one in divided.get(k, () if _waits(op) else (op,))]
+        targets: dict[int, list[Target]] = {}
+        for k, one in found.results.items():
+            if one is not None and not found.cancelled:
+                pieces = zip(one.faces, one.axes, strict=True)
+                targets[k] = [Target(piece, axis, however_long=True) for piece, axis in pieces]
+        every = [target for some in targets.values() for target in some]
+        made, cancelled = self._operations_of(every, progress)
+        divided: dict[int, list[Operation]] = {}
+        for k, some in targets.items():
+            operations = self._made_of_all(some, made)
+            if self._serves_better(operations, rows[k]):
+                divided[k] = operations
+        kept: list[Operation] = []
+        late = []
+        for k, op in enumerate(rows):
+            if k in divided:
+                kept += divided[k]
+            elif _waits(op):
+                late.append(Target(op.face, op.orientation.axis, however_long=True))
+            else:
+                kept.append(op)
         stopped = found.cancelled or cancelled
-        late = [Target(op.face, op.orientation.axis, however_long=True) for k, op in enumerate(rows)
-                if _waits(op) and k not in divided]
         if late and not stopped:  # as without a division for time: whole, or by reach
             undivided = self._plan_targets(late, (), progress, scene)
             kept += undivided.operations
             stopped = undivided.outcome == "cancelled"
-        plan = replace(plan, operations=tuple(replace(op, number=k) for k, op in enumerate(kept, 1)))
+        plan = replace(plan, operations=_renumber(kept))
         for why in found.faults.values():
             plan = with_fault(plan, why)
         return replace(plan, outcome="cancelled") if stopped else plan
 
+    @property
+    def _feedrate(self) -> float:
+        """mm/s, of the tool."""
+        return self.inputs.at_rates_of(self.tool).feedrate / 60
+
     @staticmethod
     def _made_of_all(targets: Sequence[Target], operations: Sequence[Operation]) -> list[Operation]:
         """What was made of some targets, as far as it was."""
-        return [one for target in targets if (one := made_of(target, operations)) is not None]
+        made = [made_of(target, operations) for target in targets]
+        return [one for one in made if one is not None]
 
     def _serves_better(self, pieces: Sequence[Operation], whole: Operation) -> bool:
         """Whether the operations of a face's pieces machine as much as that of the whole, in less time."""
@@ -281,7 +320,8 @@ class PlanningJob:
 
     def _seconds(self, operations: Sequence[Operation]) -> float:
         """Time of some operations in their quickest order, index moves between them included."""
-        return add_times(self._plan(tuple(operations), "complete", ()), reorder=True).seconds
+        plan = self._plan(tuple(operations), "complete", ())
+        return add_times(plan, reorder=True).seconds
 
     def copy_operations(self, asked: Sequence[tuple[Operation, AlikeFace]],
                         progress: Progress) -> list[Operation | None] | None:
@@ -301,7 +341,8 @@ class PlanningJob:
         pieces = [carry_piece(op, alike) for op, alike in asked]
 
         def _copy(k: int, inner: Progress) -> Operation | None:
-            (op, alike), piece = asked[k], pieces[k]
+            op, alike = asked[k]
+            piece = pieces[k]
             if piece is None:
                 return None
             inner.report(f"copy of face {op.face.label} on face {piece.label}", k, len(asked))
@@ -312,9 +353,12 @@ class PlanningJob:
         done = abreast(_copy, len(asked), self.workers, progress)
         if done.cancelled:
             return None
-        rows = tuple(replace(op, face=piece, number=k + 1) for k, piece in enumerate(pieces)
-                     if piece is not None and (op := done.results.get(k)) is not None)
-        plan = self._with_zones(self._plan(rows, "complete", ()), progress)
+        rows = []
+        for k, piece in enumerate(pieces):
+            op = done.results.get(k)
+            if piece is not None and op is not None:
+                rows.append(replace(op, face=piece, number=k + 1))
+        plan = self._with_zones(self._plan(tuple(rows), "complete", ()), progress)
         if plan.outcome == "cancelled":
             return None
         made = {op.number: op for op in plan.operations}
@@ -332,12 +376,17 @@ class PlanningJob:
         """The plan for faces, divided where asked for; whole where the division is free and takes more time."""
         made = self._as_asked(faces, progress)
         free = "auto" in (self.regions, self.orientations) or (self.regions is None and self.orientations is not None)
-        if self.inputs.objective != "time" or not free or made.outcome == "cancelled" \
-                or len(made.operations) == len(smooth_pieces((*faces, *self.whole), self.tool)):
+        if self.inputs.objective != "time" or not free or made.outcome == "cancelled":
             return made
-        whole = replace(self, regions=None, orientations=None)._as_asked(faces, progress.within("undivided"))
+        undivided = smooth_pieces((*faces, *self.whole), self.tool)
+        if len(made.operations) == len(undivided):
+            return made
+        job = replace(self, regions=None, orientations=None)
+        whole = job._as_asked(faces, progress.within("undivided"))
         most = self.orientations if isinstance(self.orientations, int) else np.inf
-        return went_on(made, lambda plan: quicker(plan, whole)) if whole.orientations <= most else made
+        if whole.orientations > most:
+            return made
+        return went_on(made, lambda plan: quicker(plan, whole))
 
     def _as_asked(self, faces: Sequence[Face], progress: Progress) -> Plan:
         """The plan for faces, divided where asked for, one sub-surface after the other."""
@@ -365,13 +414,18 @@ class PlanningJob:
             made, cancelled = self._divided_by_reach(targets, made, scene, progress)
         if cancelled:  # a sub-surface that waits for its division has not been tried
             made = tuple(op for op in made if _IN_PIECES not in op.orientation.reasons and not _waits(op))
-        plan = self._plan(made, "cancelled" if cancelled else _outcome(made), options)
-        return self._face_by_face(plan, progress) if not cancelled and self._may_divide else plan
+            return self._plan(made, "cancelled", options)
+        plan = self._plan(made, _outcome(made), options)
+        return self._face_by_face(plan, progress) if self._may_divide else plan
 
     def _operations_of(self, targets: list[Target], progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations of sub-surfaces as far as they were made, and whether the user stopped that."""
-        count = len(targets)
-        done = abreast(lambda k, inner: self._operation(targets[k], (k, count), inner), count, self.workers, progress)
+        number = len(targets)
+
+        def _make(k: int, inner: Progress) -> Operation:
+            return self._operation(targets[k], (k, number), inner)
+
+        done = abreast(_make, number, self.workers, progress)
         made = dict(done.results)
         for k, why in done.faults.items():
             made[k] = fail_face(k + 1, targets[k].face, self.tool, why)
@@ -386,14 +440,16 @@ class PlanningJob:
     def _divided_by_reach(self, targets: list[Target], made: tuple[Operation, ...], scene: ReachScene | None,
                           progress: Progress) -> tuple[tuple[Operation, ...], bool]:
         """The operations with those of sub-surfaces in the place of faces that no axis reaches whole."""
-        lost = [k for k, op in enumerate(made) if not op.done and not op.failed and targets[k].ended is None
-                and targets[k].given is None and not _waits(op)]
+        lost = [k for k, op in enumerate(made) if _is_lost(targets[k], op)]
         stage = progress.within("division by reach")
         if not lost:
             return made, False
         known = ReachScene.of(self.part, self.obstacles) if scene is None else scene
-        found = abreast(lambda k, inner: self._reached(targets[lost[k]].face, known, inner), len(lost), self.workers,
-                        stage)
+
+        def _divide(k: int, inner: Progress) -> ReachDivision | None:
+            return self._reached(targets[lost[k]].face, known, inner)
+
+        found = abreast(_divide, len(lost), self.workers, stage)
         if found.cancelled:
             return made, True
         divisions = {lost[k]: one for k, one in found.results.items() if one is not None and one.pieces}
@@ -402,7 +458,8 @@ class PlanningJob:
             pieces, stopped = self._share_axes(pieces, [op for op in made if op.done], known, stage)
             if stopped:
                 return made, True
-        done, cancelled = self._operations_of([piece for some in pieces.values() for piece in some], stage)
+        every = [piece for some in pieces.values() for piece in some]
+        done, cancelled = self._operations_of(every, stage)
         if not cancelled:  # what the proof refuses is tried once more, a little smaller
             tried = [op for op in done if not _waits(op)]
             pieces = {k: shrink_refused(some, tried, made[k], divisions[k]) for k, some in pieces.items()}
@@ -413,15 +470,16 @@ class PlanningJob:
         rows: list[Operation] = []
         with activate_progress(NO_PROGRESS) if cancelled else nullcontext():  # what is finished is kept
             for k, op in enumerate(made):
-                own = [one for piece in pieces.get(k, ()) if (one := made_of(piece, done)) is not None]
+                own = self._made_of_all(pieces.get(k, ()), done)
                 rows += self._with_machined_beside(own) or [failed.get(k, op)]
-        return tuple(replace(op, number=k) for k, op in enumerate(rows, 1)), cancelled
+        return _renumber(rows), cancelled
 
     def _share_axes(self, pieces: dict[int, list[Target]], done: Sequence[Operation], scene: ReachScene,
                     progress: Progress) -> tuple[dict[int, list[Target]], bool]:
         """Sub-surfaces of divided faces, with axes that serve several of them; and whether the user stopped that."""
-        used = [*self.known_axes, *(op.orientation.axis for op in done if op.orientation.axis is not None)]
-        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
+        of_done = [op.orientation.axis for op in done]
+        used = [*self.known_axes, *(axis for axis in of_done if axis is not None)]
+        rate = self._feedrate
         open_ = [target for some in pieces.values() for target in some if target.ended is None]
 
         def _reckon(face: Face, axes: Array, own: int, inner: Progress) -> tuple[AxisTime, ...]:
@@ -452,22 +510,29 @@ class PlanningJob:
         lost = [skin for skin in skins if loses_area(own[skin.number], skin.area)]
         if not lost:
             return plan
-        apart = replace(self, part=take_apart(self.part, [skin.number for skin in lost]), whole=(), division=())
-        faces = self._free_parts(apart.part.face(number) for skin in lost for number in skin.numbers)
+        taken_apart = take_apart(self.part, [skin.number for skin in lost])
+        apart = replace(self, part=taken_apart, whole=(), division=())
+        faces = self._free_parts(taken_apart.face(number) for skin in lost for number in skin.numbers)
         other = apart._as_asked(faces, progress.within("faces one by one"))
         if other.outcome == "cancelled":  # what is finished is kept
             return replace(plan, outcome="cancelled")
-        part, taken = self.part, {}
+        part = self.part
+        taken: dict[int, list[Operation]] = {}
         for skin in lost:
             rows = [op for op in other.operations if op.face.number in skin.numbers]
-            if is_better(rows, own[skin.number], skin.area):
-                part = take_apart(part, [skin.number]).with_warnings(compare_areas(skin, own[skin.number], rows))
+            before = own[skin.number]
+            if is_better(rows, before, skin.area):
+                part = take_apart(part, [skin.number])
+                part = part.with_warnings(compare_areas(skin, before, rows))
                 taken[skin.number] = name_faces(skin, rows)
-        rows = []
+        kept: list[Operation] = []
         for op in plan.operations:  # they stand where the first sub-surface of their skin stood
-            first = op.face.number in taken and op is own[op.face.number][0]
-            rows += taken[op.face.number] if first else [] if op.face.number in taken else [op]
-        made = tuple(replace(op, number=k) for k, op in enumerate(rows, 1))
+            number = op.face.number
+            if number not in taken:
+                kept.append(op)
+            elif op is own[number][0]:
+                kept += taken[number]
+        made = _renumber(kept)
         return replace(plan, part=part, operations=made, outcome=_outcome(made))
 
     def _free_parts(self, faces: Iterable[Face]) -> list[Face]:
@@ -529,13 +594,16 @@ class PlanningJob:
 
     def _budget(self, face: Face) -> Budget:
         """The work that a sub-surface is allowed."""
-        return Budget(self.inputs.limit, self._times_of_work(face), _FOR_PASSES if self.asked_area > 0 else 0.0)
+        for_passes = _FOR_PASSES if self.asked_area > 0 else 0.0
+        return Budget(self.inputs.limit, self._times_of_work(face), for_passes)
 
     def _times_of_work(self, face: Face) -> float:
         """How many times the limit of work a sub-surface is allowed."""
         if self.asked_area > 0:
-            return float(np.clip(_WORK_OF_SHARE * face.area / self.asked_area, _LEAST_WORK, _MOST_WORK))
-        return (MOVING if self._strategy.moves else 1.0) * len(face.numbers)
+            by_share = _WORK_OF_SHARE * face.area / self.asked_area
+            return float(np.clip(by_share, _LEAST_WORK, _MOST_WORK))
+        each = MOVING if self._strategy.moves else 1.0
+        return each * len(face.numbers)
 
     def _with_axis(self, target: Target, place: tuple[int, int], progress: Progress) -> Operation:
         """The operation of a sub-surface, with a shared axis where that may be used."""
@@ -578,11 +646,15 @@ class PlanningJob:
     def _axis_of_hours(self, target: Target, progress: Progress) -> Array | None:
         """The axis that is known of a sub-surface, where it would take so long under that one that it is divided first;
         None elsewhere."""
-        known = target.others[-1:] if target.axis is None else (target.axis,)
-        if not self.for_time or not self.asked_area or target.however_long or not known:
+        if not self.for_time or not self.asked_area or target.however_long:
             return None
-        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
-        return known[0] if estimate_seconds(self.task(target.face, progress), known[0], rate) > _LONG else None
+        axis = target.axis
+        if axis is None:
+            if not len(target.others):
+                return None
+            axis = target.others[-1]
+        seconds = estimate_seconds(self.task(target.face, progress), axis, self._feedrate)
+        return axis if seconds > _LONG else None
 
     def _plan_with_shared_axis(self, target: Target, progress: Progress) -> tuple[Orientation, ToolPath | None]:
         """What the shared axis comes to; where it is refused, the cheapest of the others' that is not."""
@@ -591,7 +663,8 @@ class PlanningJob:
         found, path = evaluate_given_axis(job, target.axis)
         if found.axis is not None:
             return found, path
-        rest = [one for one in (evaluate_given_axis(job, other) for other in target.others) if one[0].axis is not None]
+        tried = [evaluate_given_axis(job, other) for other in target.others]
+        rest = [one for one in tried if one[0].axis is not None]
         if not rest:
             return found, path
         other, path = min(rest, key=lambda one: _price(job, one[0]))
@@ -607,13 +680,13 @@ class PlanningJob:
         known = [] if target.axis is None else [target.axis]
         if not target.shared:  # the axes that others share were tried before
             known += target.others
-        return self._strategy.plan(self.task(target.face, progress), self.inputs, np.array(known) if known else None)
+        axes = np.array(known) if known else None
+        return self._strategy.plan(self.task(target.face, progress), self.inputs, axes)
 
     @property
     def _index_length(self) -> float:
         """Length of a cut that takes as long as an index move, mm; 0 in a plan with one tool."""
-        rate = self.inputs.at_rates_of(self.tool).feedrate / 60
-        return INDEX_SECONDS * rate if self.asked_area > 0 else 0.0
+        return INDEX_SECONDS * self._feedrate if self.asked_area > 0 else 0.0
 
     @property
     def _strategy(self) -> Strategy:
@@ -637,17 +710,30 @@ class PlanningJob:
         face : Face
         progress : Progress
         """
-        return search_task(face, self.tool, self.inputs.scallop, self.axis_limits, self.obstacles,
-                           objective=self.inputs.objective, feeds=feeds_of(self.inputs.at_rates_of(self.tool)),
-                           part=self.part, allowance=self.inputs.allowance_of(face), tolerance=self.inputs.tolerance,
-                           direction=self.inputs.direction, passes=self.inputs.passes,
-                           greatest_step_over=self.inputs.step_over, lead=self.inputs.lead,
-                           index_length=self._index_length, progress=progress)
+        inputs = self.inputs
+        feeds = feeds_of(inputs.at_rates_of(self.tool))
+        allowance = inputs.allowance_of(face)
+        return search_task(face, self.tool, inputs.scallop, self.axis_limits, self.obstacles,
+                           objective=inputs.objective, feeds=feeds, part=self.part, allowance=allowance,
+                           tolerance=inputs.tolerance, direction=inputs.direction, passes=inputs.passes,
+                           greatest_step_over=inputs.step_over, lead=inputs.lead, index_length=self._index_length,
+                           progress=progress)
 
 
 def _waits(op: Operation) -> bool:
     """Whether a sub-surface is yet to be divided for its time, or planned whole."""
     return _HOURS in op.orientation.reasons
+
+
+def _is_lost(target: Target, op: Operation) -> bool:
+    """Whether no axis was found for a sub-surface of which nobody said how it is machined."""
+    is_open = not op.done and not op.failed and not _waits(op)
+    return is_open and target.ended is None and target.given is None
+
+
+def _renumber(operations: Sequence[Operation]) -> tuple[Operation, ...]:
+    """Operations numbered from 1, in their order."""
+    return tuple(replace(op, number=k) for k, op in enumerate(operations, 1))
 
 
 def _outcome(operations: Sequence[Operation]) -> str:
