@@ -261,7 +261,7 @@ def expect_widths(tool: Tool, lean: float, scallop: float) -> tuple[float, float
 
     Examples
     --------
-    >>> [round(x, 4) for x in expected_widths(Tool.torus(10, 3), np.radians(20.0), 0.1)]
+    >>> [round(x, 4) for x in expect_widths(Tool.torus(10, 3), np.radians(20.0), 0.1)]
     [2.1529, 3.1529]
     """
     check_bull_nose(tool)
