@@ -30,7 +30,7 @@ def strokes_on(lines: list[list[tuple[float, float]]]) -> tuple[list[CuttingMove
 
 def ordered(lines: list[list[tuple[float, float]]], sense: int | None = None) -> list[OrderedStroke]:
     moves, pieces, owner = strokes_on(lines)
-    return [one for some in order_strokes(moves, pieces, owner, sense) for one in some]
+    return [one for some in order_strokes([move.tip for move in moves], pieces, owner, sense) for one in some]
 
 
 def way_between(lines: list[list[tuple[float, float]]], order: list[OrderedStroke]) -> float:
@@ -83,7 +83,7 @@ def test_each_stroke_once_and_after_those_that_it_lies_beside(seed: int, sense: 
         ends = np.sort(rng.uniform(0, 80, 2 * int(rng.integers(1, 5))))
         lines.append([(float(low), float(high)) for low, high in ends.reshape(-1, 2)])
     moves, pieces, owner = strokes_on(lines)
-    passes = order_strokes(moves, pieces, owner, sense)
+    passes = order_strokes([move.tip for move in moves], pieces, owner, sense)
     order = [one for some in passes for one in some]
     assert sorted(one.number for one in order) == list(range(len(moves)))
     assert all(len({owner[one.number] for one in some}) == 1 for some in passes)

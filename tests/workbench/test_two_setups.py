@@ -1,6 +1,7 @@
 """A part in two setups: the second plan of a document takes what the first one leaves, and knows when that changes."""
 
 import json
+from shutil import copyfile
 
 import FreeCAD
 import pytest
@@ -21,27 +22,46 @@ ASKED = {"tool": "torus:6x1", "stickout": 30.0, "holder": ((8.0, 0.0), (8.0, 30.
 FIRST, SECOND = "x<10", "x>27"
 
 
-def planned(document, whole_parts):
-    """The part, its face, and the whole plans of both setups."""
-    document.UndoMode = 1
+@pytest.fixture(scope="module")
+def saved(whole_parts, tmp_path_factory):
+    """A document with both setups, and the names of its part, the face, and the whole plans."""
+    document = FreeCAD.newDocument("Both")
     thing, name = whole_parts.roof(document)
     first = plan_of(api.plan(document, (thing, name), held=FIRST, **ASKED)[0])
     second = plan_of(api.plan(document, thing, held=SECOND, after=first, **ASKED)[0])
-    return (thing, name), first, second
+    path = str(tmp_path_factory.mktemp("setups") / "Both.FCStd")
+    names = thing.Name, name, first.Name, second.Name
+    document.saveAs(path)
+    FreeCAD.closeDocument(document.Name)
+    return path, names
+
+
+def opened(saved, path):
+    """A copy of the document under a path, with its part, the face, and the whole plans."""
+    source, (thing, name, *plans) = saved
+    copyfile(source, path)
+    document = FreeCAD.openDocument(str(path))
+    document.UndoMode = 1
+    first, second = map(document.getObject, plans)
+    return (document.getObject(thing), name), first, second
 
 
 @pytest.fixture
-def setups(document, whole_parts):
+def setups(saved, tmp_path):
     """Both setups, to be changed."""
-    return planned(document, whole_parts)
+    found = opened(saved, tmp_path / "Changed.FCStd")
+    name = found[1].Document.Name
+    yield found
+    if name in FreeCAD.listDocuments():
+        FreeCAD.closeDocument(name)
 
 
 @pytest.fixture(scope="module")
-def kept(whole_parts):
+def kept(saved, tmp_path_factory):
     """Both setups, for all that change nothing."""
-    document = FreeCAD.newDocument("Kept")
-    yield planned(document, whole_parts)
-    FreeCAD.closeDocument(document.Name)
+    found = opened(saved, tmp_path_factory.mktemp("setups") / "Kept.FCStd")
+    yield found
+    FreeCAD.closeDocument(found[1].Document.Name)
 
 
 def exported(plan, folder):

@@ -1,5 +1,7 @@
 """From places of passes to a tool path: order, direction, points and links."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -8,7 +10,7 @@ from toolaxis.errors import InvalidInput
 from toolaxis.path.links import CuttingMove, Linking, link
 from toolaxis.path.parametrization import Chart, Cut
 from toolaxis.path.pass_layout import Layout
-from toolaxis.path.stroke_order import ZIGZAG, order_strokes
+from toolaxis.path.stroke_order import ZIGZAG, OrderedStroke, order_strokes
 
 Array = NDArray[np.float64]
 
@@ -64,16 +66,27 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     if direction not in DIRECTIONS:
         raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
     moves = [one.move for one in layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)]
-    return link(_order_moves(moves, layout, direction), layout.cut.axis, linking or Linking(_crossing(layout, box)))
+    order = order_pieces([move.tip for move in moves], layout, direction)
+    passes = [[moves[one.number] if one.sense > 0 else _back(moves[one.number]) for one in some] for some in order]
+    return link(passes, layout.cut.axis, linking or Linking(_crossing(layout, box)))
 
 
-def _order_moves(moves: list[CuttingMove], layout: Layout, direction: str) -> list[list[CuttingMove]]:
+def order_pieces(tips: Sequence[Array], layout: Layout, direction: str) -> list[list[OrderedStroke]]:
+    """Passes, or the parts of passes that are cut one after the other, with their pieces in the order of cutting.
+
+    Parameters
+    ----------
+    tips : sequence of n arrays (k, 3)
+        Tips along each piece of the layout, mm.
+    layout : Layout
+    direction : str
+        One of `DIRECTIONS`.
+    """
     sense = None
     if direction != ZIGZAG:
         climb = climbing(layout.chart, layout.cut)
         sense = climb if direction == "climb" else -climb
-    passes = order_strokes(moves, layout.pieces, layout.owner, sense)
-    return [[moves[one.number] if one.sense > 0 else _back(moves[one.number]) for one in some] for some in passes]
+    return order_strokes(tips, layout.pieces, layout.owner, sense)
 
 
 def _back(stroke: CuttingMove) -> CuttingMove:

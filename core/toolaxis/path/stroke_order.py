@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from toolaxis.path.links import BESIDE, CuttingMove
+from toolaxis.path.links import BESIDE
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -72,8 +72,7 @@ class _Strokes:
         return float(ways.sum() + _LIFT * (ways > BESIDE).sum())
 
 
-def order_strokes(moves: Sequence[CuttingMove], pieces: Array, owner: Index,
-                  sense: int | None) -> list[list[OrderedStroke]]:
+def order_strokes(tips: Sequence[Array], pieces: Array, owner: Index, sense: int | None) -> list[list[OrderedStroke]]:
     """Passes, or the parts of passes that are cut one after the other, with their strokes in the order of cutting.
 
     Where passes are interrupted, the strokes on one side of a gap are cut first where that makes the ways between
@@ -81,8 +80,8 @@ def order_strokes(moves: Sequence[CuttingMove], pieces: Array, owner: Index,
 
     Parameters
     ----------
-    moves : sequence of n CuttingMove
-        In the sense of the along parameter, sorted by pass, then along.
+    tips : sequence of n arrays (k, 3)
+        Tips along each stroke in the sense of the along parameter, mm, sorted by pass, then along.
     pieces : (n, 3) array
         along0, along1, step of each.
     owner : (n,) array of int
@@ -99,8 +98,9 @@ def order_strokes(moves: Sequence[CuttingMove], pieces: Array, owner: Index,
     order = [one for some in passes for one in some]
     if len(passes) == len(order):
         return passes
-    strokes = _Strokes(np.array([move.tip[0] for move in moves]), np.array([move.tip[-1] for move in moves]),
-                       pieces[:, 0], pieces[:, 1], owner)
+    first = np.array([some[0] for some in tips])
+    last = np.array([some[-1] for some in tips])
+    strokes = _Strokes(first, last, pieces[:, 0], pieces[:, 1], owner)
     sideways = _order_by_side(strokes, order[0], sense)
     if strokes.way_of(sideways) >= strokes.way_of(order):
         return passes

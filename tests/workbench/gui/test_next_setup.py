@@ -88,7 +88,7 @@ def test_the_next_setup_is_a_click_away(desk, roof):
     close_with(desk, "Cancel")
 
 
-def test_an_earlier_setup_is_chosen_and_given_up_again(desk, roof, whole_parts):
+def test_an_earlier_setup_is_chosen_and_given_up_again(desk, roof, whole_parts, remembered):
     document = roof[0].Document
     whole_parts.roof(document, "Other")
     form = begin(desk, roof, "x<10")
@@ -129,7 +129,7 @@ def test_a_plan_does_not_follow_itself(desk, roof, remembered):
     close_with(desk, "Cancel")
 
 
-def test_in_german(german, roof):
+def test_in_german(german, roof, remembered):
     desk = german
     form = begin(desk, roof, "x<10")
     desk.computed(form)

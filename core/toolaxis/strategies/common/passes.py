@@ -18,7 +18,7 @@ from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.chord_tolerance import follow, rises
-from toolaxis.path.cl_points import climbing
+from toolaxis.path.cl_points import order_pieces
 from toolaxis.path.links import LeadArcs, Linking
 from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import tip_points
@@ -173,13 +173,8 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
 
 def _order_moves(strokes: list[MovingCuttingMove], placed: Layout, direction: str) -> list[list[MovingCuttingMove]]:
     """Strokes of each pass in the order and sense in which they are cut."""
-    climb = climbing(placed.chart, placed.cut)
-    passes: list[list[MovingCuttingMove]] = []
-    for i in np.unique(placed.owner):
-        members = [strokes[j] for j in np.flatnonzero(placed.owner == i)]
-        sense = (-1) ** len(passes) if direction == "zigzag" else climb if direction == "climb" else -climb
-        passes.append(members if sense > 0 else [_back(one) for one in reversed(members)])
-    return passes
+    order = order_pieces([stroke.tip for stroke in strokes], placed, direction)
+    return [[strokes[one.number] if one.sense > 0 else _back(strokes[one.number]) for one in some] for some in order]
 
 
 def _back(one: MovingCuttingMove) -> MovingCuttingMove:
