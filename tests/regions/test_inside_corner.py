@@ -71,6 +71,17 @@ def test_within_the_clearance_of_a_wall_no_ball_is_small_enough() -> None:
     assert found is not None and found.radius == 0.0
 
 
+def test_the_clearance_is_that_of_the_face_that_is_named() -> None:
+    floor, wall, far = ta.Part.from_faces([plane(0.0), plane(90.0), plane(100.0)]).faces
+    near = CheckSurfaces(OTHER, (wall,), np.array([0.3, 0.5, 1.0]))
+    behind = CheckSurfaces(OTHER, (far,), np.array([0.05, 0.5, 1.0]))
+    places = floor.grid(3, 30)
+    uv = places[places[:, 1] < places[:, 1].min() * 1.5]
+    for groups in ((near, behind), (behind, near)):
+        found = find_inside_corner(floor, uv, groups, smallest=1.0)
+        assert found is not None and (found.beside, found.clearance) == ("2", 0.3)
+
+
 def told(corner: InsideCorner | None) -> str:
     return what_closes(OpenPlace("1", 1.0, 1.0, np.zeros(3), inf, False, corner=corner), 0.25)
 

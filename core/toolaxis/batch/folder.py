@@ -15,7 +15,7 @@ from typing import Any
 from toolaxis.batch.jobfile import CheckedJob
 from toolaxis.batch.journal import Journal
 from toolaxis.batch.summary import JobRow, summary_csv, summary_document
-from toolaxis.batch.task import BatchAnswer, EarlierPlan
+from toolaxis.batch.task import BatchAnswer
 from toolaxis.errors import InvalidInput, JobError, MissingBackend
 from toolaxis.job.files.plan_folder import make_folders, remove_empty
 
@@ -151,8 +151,8 @@ class BatchFolder:
             return None
         return found
 
-    def earlier_plan(self, name: str) -> EarlierPlan:
-        """The plan of a job that has one.
+    def files_of(self, name: str) -> dict[str, bytes]:
+        """The files of a job that has a plan, by their names.
 
         Parameters
         ----------
@@ -165,13 +165,12 @@ class BatchFolder:
             When a file of it cannot be read any more.
         """
         target = self.path / name
-        found = _read(target)
+        found = _read(target) or {"files": {}}
         try:
-            files = {} if found is None else {one: (target / one).read_bytes() for one in found["files"]}
+            return {one: (target / one).read_bytes() for one in found["files"]}
         except OSError as reason:
             raise InvalidInput(f"job {name}, after which this one goes on, has lost {reason.filename}: run it "
                                "again") from reason
-        return EarlierPlan(name, files)
 
     def started(self, job: CheckedJob) -> None:
         """Write down that a job begins.

@@ -21,7 +21,7 @@ from typing import Any
 
 from toolaxis import __version__
 from toolaxis.batch.hand import MEGABYTE, descendants
-from toolaxis.batch.task import BatchAnswer, BatchTask, EarlierPlan, PartBytes
+from toolaxis.batch.task import BatchAnswer, BatchTask, PartBytes
 from toolaxis.errors import OUT_OF_MEMORY, InvalidInput, MissingBackend, ToolAxisError, UnsupportedGeometry
 from toolaxis.numeric.jit import compilations
 from toolaxis.plan.plan import Plan
@@ -140,12 +140,12 @@ def _figures(made: Plan) -> dict[str, Any]:
             **{name: float(size) if isfinite(size) else None for name, size in sizes.items()}}
 
 
-def _earlier_plan(earlier: EarlierPlan, scratch: Path) -> Plan:
-    """The plan for a setup before, read from files that are gone afterwards."""
+def _earlier_plan(files: dict[str, bytes], scratch: Path) -> Plan:
+    """The plan for a setup before, read from its files."""
     from toolaxis.job.files.plan_folder import read_plan
 
     with tempfile.TemporaryDirectory(prefix="earlier-", dir=scratch) as folder:
-        for name, content in earlier.files.items():
+        for name, content in files.items():
             (Path(folder) / name).write_bytes(content)
         return read_plan(Path(folder))
 

@@ -172,7 +172,7 @@ class _Run:
         for name in job.after:
             if self._rows[name].outcome == "failed":
                 raise InvalidInput(f"job {name}, after which this one goes on, has no plan: see to that one first")
-        return replace(task, earlier=tuple(map(self._folder.earlier_plan, job.after)))
+        return replace(task, earlier=tuple(map(self._folder.files_of, job.after)))
 
     def carried_out(self, answers: Iterator[tuple[BatchTask, BatchAnswer] | None]) -> Batch:
         """The batch, once all its jobs have ended or the user has stopped it."""

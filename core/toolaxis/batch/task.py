@@ -33,22 +33,6 @@ class PartBytes:
 
 
 @dataclass(frozen=True)
-class EarlierPlan:
-    """The plan for a setup before, so that it can be read where its folder is not.
-
-    Attributes
-    ----------
-    job : str
-        Name of its job.
-    files : dict of str to bytes
-        Of its folder.
-    """
-
-    job: str
-    files: dict[str, bytes] = field(repr=False)
-
-
-@dataclass(frozen=True)
 class BatchTask:
     """One job, complete: it needs no file beside it.
 
@@ -73,8 +57,8 @@ class BatchTask:
         MB that its process may take.
     version : str
         Of the toolaxis that asks.
-    earlier : tuple of EarlierPlan
-        For the setups before, the first one first.
+    earlier : tuple of dicts of str to bytes
+        Files of the plans for the setups before, the first one first.
     """
 
     name: str
@@ -90,7 +74,7 @@ class BatchTask:
     timeout: float | None
     memory: float | None
     version: str
-    earlier: tuple[EarlierPlan, ...] = ()
+    earlier: tuple[dict[str, bytes], ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """From places of passes to a tool path: order, direction, points and links."""
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,9 +11,10 @@ from toolaxis.errors import InvalidInput
 from toolaxis.path.links import CuttingMove, Linking, link
 from toolaxis.path.parametrization import Chart, Cut
 from toolaxis.path.pass_layout import Layout
-from toolaxis.path.stroke_order import ZIGZAG, OrderedStroke, order_strokes
+from toolaxis.path.stroke_order import ZIGZAG, order_strokes
 
 Array = NDArray[np.float64]
+Move = TypeVar("Move", bound=CuttingMove)
 
 DIRECTIONS = (ZIGZAG, "climb", "conventional")
 
@@ -29,13 +31,16 @@ def climbing(chart: Chart, cut: Cut) -> int:
     cut : Cut
     """
     a0, a1, s0, s1 = chart.bounds
-    a, s = (a0 + a1) / 2, (s0 + s1) / 2
-    da, ds = (a1 - a0) * 1e-4, (s1 - s0) * 1e-4
+    a = (a0 + a1) / 2
+    s = (s0 + s1) / 2
+    da = (a1 - a0) * 1e-4
+    ds = (s1 - s0) * 1e-4
     along = np.array([a - da, a + da, a, a])
     step = np.array([s, s, s - ds, s + ds])
     before, ahead, machined, uncut = chart.face.evaluate(chart.uv(along, step)).point
     right = np.cross(ahead - before, cut.axis)
-    return 1 if float(right @ (uncut - machined)) >= 0 else -1
+    towards_uncut = float(right @ (uncut - machined))
+    return 1 if towards_uncut >= 0 else -1
 
 
 def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLike | None = None,
@@ -66,18 +71,17 @@ def trace(layout: Layout, chord: float, direction: str = "zigzag", box: ArrayLik
     if direction not in DIRECTIONS:
         raise InvalidInput(f"direction is {direction!r}: it must be one of {', '.join(DIRECTIONS)}")
     moves = [one.move for one in layout.traced.trace(layout.chart, layout.cut, layout.pieces, chord)]
-    order = order_pieces([move.tip for move in moves], layout, direction)
-    passes = [[moves[one.number] if one.sense > 0 else _back(moves[one.number]) for one in some] for some in order]
+    passes = order_moves(moves, layout, direction)
     return link(passes, layout.cut.axis, linking or Linking(_crossing(layout, box)))
 
 
-def order_pieces(tips: Sequence[Array], layout: Layout, direction: str) -> list[list[OrderedStroke]]:
-    """Passes, or the parts of passes that are cut one after the other, with their pieces in the order of cutting.
+def order_moves(moves: Sequence[Move], layout: Layout, direction: str) -> list[list[Move]]:
+    """The passes, or the parts of passes that are cut one after the other, in the order and the sense of cutting.
 
     Parameters
     ----------
-    tips : sequence of n arrays (k, 3)
-        Tips along each piece of the layout, mm.
+    moves : sequence of CuttingMove
+        Along each piece of the layout, in the sense of its along parameter.
     layout : Layout
     direction : str
         One of `DIRECTIONS`.
@@ -86,15 +90,20 @@ def order_pieces(tips: Sequence[Array], layout: Layout, direction: str) -> list[
     if direction != ZIGZAG:
         climb = climbing(layout.chart, layout.cut)
         sense = climb if direction == "climb" else -climb
-    return order_strokes(tips, layout.pieces, layout.owner, sense)
-
-
-def _back(stroke: CuttingMove) -> CuttingMove:
-    return CuttingMove(stroke.contact[::-1], stroke.tip[::-1], stroke.normal[::-1])
+    tips = [move.tip for move in moves]
+    passes: list[list[Move]] = []
+    for strokes in order_strokes(tips, layout.pieces, layout.owner, sense):
+        passes.append([])
+        for stroke in strokes:
+            move = moves[stroke.number]
+            passes[-1].append(move if stroke.sense > 0 else move.backwards)
+    return passes
 
 
 def _crossing(layout: Layout, box: ArrayLike | None, above: float = 5.0) -> float:
     """Height along the axis at which the tip is above every corner of the box."""
-    low, high = np.asarray(layout.chart.face.box if box is None else box, dtype=float)
+    corners = layout.chart.face.box if box is None else box
+    low, high = np.asarray(corners, dtype=float)
     axis = layout.cut.axis
-    return float(np.maximum(low * axis, high * axis).sum()) + above
+    highest = float(np.maximum(low * axis, high * axis).sum())
+    return highest + above

@@ -1,8 +1,8 @@
 """From pieces of passes to one tool path: run in, cut, run out; on to the next beside it, or up, across and down."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,12 @@ class CuttingMove:
     contact: Array
     tip: Array
     normal: Array
+
+    @property
+    def backwards(self) -> Self:
+        """The same from its end to its begin."""
+        points = {field.name: getattr(self, field.name) for field in fields(self)}
+        return replace(self, **{name: array[::-1] for name, array in points.items()})
 
 
 @dataclass(frozen=True)

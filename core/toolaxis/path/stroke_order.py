@@ -169,14 +169,12 @@ def _cover(covered: list[_Covered], by: _Covered) -> list[_Covered]:
 def _nearest(strokes: _Strokes, candidates: Index, last: OrderedStroke, sense: int | None) -> OrderedStroke:
     """The stroke that begins nearest to the end of the last one; to and fro, either way."""
     here = strokes.end(last)
-    along = np.linalg.norm(strokes.first[candidates] - here, axis=1)
-    against = np.linalg.norm(strokes.last[candidates] - here, axis=1)
-    if sense is None:
-        back = -last.sense
-        other, same = (along, against) if back > 0 else (against, along)
-        turned = same < other - _SAME
-        ways = np.where(turned, same, other)
-        nearest = int(np.argmin(ways))
-        return OrderedStroke(int(candidates[nearest]), -back if turned[nearest] else back)
-    ways = along if sense > 0 else against
-    return OrderedStroke(int(candidates[np.argmin(ways)]), sense)
+    ways = {1: np.linalg.norm(strokes.first[candidates] - here, axis=1),
+            -1: np.linalg.norm(strokes.last[candidates] - here, axis=1)}
+    if sense is not None:
+        nearest = int(np.argmin(ways[sense]))
+        return OrderedStroke(int(candidates[nearest]), sense)
+    on, back = last.sense, -last.sense
+    goes_on = ways[on] < ways[back] - _SAME
+    nearest = int(np.argmin(np.where(goes_on, ways[on], ways[back])))
+    return OrderedStroke(int(candidates[nearest]), on if goes_on[nearest] else back)

@@ -1,6 +1,5 @@
 """Inside corners: places of a face beside another one where no ball end of a rack is small enough to touch them."""
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -70,19 +69,18 @@ def find_inside_corner(piece: Face, uv: Array, groups: Sequence[CheckSurfaces], 
     normal = piece.normal(uv, derivatives)
     contacts = _Contacts(derivatives.point + allowance * normal, normal)
     largest = np.full(len(uv), smallest)
-    beside: list[str] = [""] * len(uv)
-    clearance = 0.0
-    for face, required in _walls_near(contacts, groups, smallest):
+    walls = _walls_near(contacts, groups, smallest)
+    beside = np.full(len(uv), -1)
+    for number, (face, required) in enumerate(walls):
         radius = _largest_balls(contacts, face, required, smallest)
-        for k in np.flatnonzero(radius < largest):
-            beside[k] = face.label
-        clearance = max(clearance, required)
+        beside[radius < largest] = number
         largest = np.minimum(largest, radius)
     half = float(np.median(largest))
     if half >= smallest:
         return None
-    (label, _), = Counter(filter(None, beside)).most_common(1)
-    return InsideCorner(label, half, clearance)
+    nearest_wall = int(np.bincount(beside[beside >= 0]).argmax())
+    face, clearance = walls[nearest_wall]
+    return InsideCorner(face.label, half, clearance)
 
 
 def _walls_near(contacts: _Contacts, groups: Sequence[CheckSurfaces], smallest: float) -> list[tuple[Face, float]]:

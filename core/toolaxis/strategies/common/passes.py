@@ -18,7 +18,7 @@ from toolaxis.machine.limits import ROUNDING
 from toolaxis.machine.setup import Mounting
 from toolaxis.numeric.vectors import angle_between, unit
 from toolaxis.path.chord_tolerance import follow, rises
-from toolaxis.path.cl_points import order_pieces
+from toolaxis.path.cl_points import order_moves
 from toolaxis.path.links import LeadArcs, Linking
 from toolaxis.path.moving_axis import MovingChart, MovingCut
 from toolaxis.path.parametrization import tip_points
@@ -155,7 +155,7 @@ def make_passes(job: FaceProblem, chart: MovingChart, cut: MovingCut[Any]) -> tu
     deeper = rises(chart, cut, steps, (piece, along), tip)[:, None] * normal
     rows = contact, tip - deeper, normal, cut.axes(chart.face, chart.uv(along, steps))
     strokes = [MovingCuttingMove(*(each[piece == k] for each in rows)) for k in range(len(placed.pieces))]
-    return placed, join_moves(_order_moves(strokes, placed, job.direction), _links(job, cut))
+    return placed, join_moves(order_moves(strokes, placed, job.direction), _links(job, cut))
 
 
 def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
@@ -169,16 +169,6 @@ def _links(job: FaceProblem, cut: MovingCut[Any]) -> MovingLinks:
     linking = Linking(job.top(cut.axis), run_in=0.0 if walls else 1.0, approach=over + OVER,
                       rise=crossing.rise, lead=lead)
     return MovingLinks(linking, cut.axis, cut.tool, crossing.clear)
-
-
-def _order_moves(strokes: list[MovingCuttingMove], placed: Layout, direction: str) -> list[list[MovingCuttingMove]]:
-    """Strokes of each pass in the order and sense in which they are cut."""
-    order = order_pieces([stroke.tip for stroke in strokes], placed, direction)
-    return [[strokes[one.number] if one.sense > 0 else _back(strokes[one.number]) for one in some] for some in order]
-
-
-def _back(one: MovingCuttingMove) -> MovingCuttingMove:
-    return MovingCuttingMove(one.contact[::-1], one.tip[::-1], one.normal[::-1], one.axis[::-1])
 
 
 def beyond(job: FaceProblem, path: ToolPath) -> Violation | None:
