@@ -78,13 +78,16 @@ class ReckonedTimes:
             own = [op for op in made if op.face.number == number]
             if len(sub_surfaces) != 1 or any(op.failed for op in own):
                 continue
+            reckoned = sub_surfaces[0]
             spent = sum(op.seconds(inputs.feedrate, inputs.rapid) for op in own)
-            longer = _times_reckoned(spent, sub_surfaces[0])
-            likely = [(longer * _likely_seconds(chain), chain.tools[0]) for chain in sub_surfaces[0].chains
-                      if chain.tools and chain.tools[0] > sub_surfaces[0].first and set(chain.tools) <= set(allowed)]
-            if likely and spent - min(likely)[0] >= max(_SECONDS, _SHARE * spent):
-                found.setdefault(min(likely)[1], []).append(number)
-                promised += spent - min(likely)[0]
+            others = _chains_of_smaller(reckoned, allowed)
+            if not others:
+                continue
+            best = min(others, key=_likely_seconds)
+            saved = spent - _times_reckoned(spent, reckoned) * _likely_seconds(best)
+            if saved >= max(_SECONDS, _SHARE * spent):
+                found.setdefault(best.tools[0], []).append(number)
+                promised += saved
         return found if promised >= _OF_ALL * seconds_of(made, frozenset(), inputs) else {}
 
 
@@ -158,6 +161,12 @@ def _likely_seconds(chain: ToolChain) -> float:
     """What the cuts of a chain take when it is made, about, and what it leaves, s: into how many sub-surfaces faces
     fall, and so how many index moves there are, nobody knows before."""
     return _MADE * (chain.seconds - INDEX_SECONDS * len(chain.tools)) + chain.charge
+
+
+def _chains_of_smaller(face: ReckonedFace, allowed: Collection[int]) -> list[ToolChain]:
+    """The chains that begin with a smaller tool than was taken, of tools that may be used."""
+    smaller = [chain for chain in face.chains if chain.tools and chain.tools[0] > face.first]
+    return [chain for chain in smaller if set(chain.tools) <= set(allowed)]
 
 
 def _times_reckoned(spent: float, face: ReckonedFace) -> float:
